@@ -12,6 +12,8 @@ import sys
 # Words in backquotes for which there is nothing to type on the command line.
 NO_FLAGS = {
     "frequency_hz": "key of a sensor model",
+    "gain_about": "key of fusion.yaml",
+    "gain_sd": "key of fusion.yaml",
     "level_sd": "key of fusion.yaml",
     "name": "key of a document",
     "none": "word of a scene",

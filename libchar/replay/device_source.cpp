@@ -189,17 +189,31 @@ class Writer {
   std::string deviation() const {
     const auto number = [&](double v) { return fusion::c_number(v, options_.single); };
     const double factor = algorithm_.sd_factor.size() == 1 ? algorithm_.sd_factor[0] : 1;
-    const std::optional<double>& level = learnt_.inputs[0].level_sd;
-    return level ? fmt::format("SQRT({} * variance + {})", number(factor * factor), number(*level * *level))
-                 : number(factor) + " * SQRT(variance)";
+    const std::string more = common_variance();
+    return more.empty() ? number(factor) + " * SQRT(variance)"
+                        : fmt::format("SQRT({} * variance{})", number(factor * factor), more);
+  }
+
+  /// Of the level and of the gain that all sensors share, to be added.
+  std::string common_variance() const {
+    const auto number = [&](double v) { return fusion::c_number(v, options_.single); };
+    const LearntInput& input = learnt_.inputs[0];
+    std::string out;
+    if (input.level_sd) out += " + " + number(*input.level_sd * *input.level_sd);
+    if (input.gain_sd) {
+      const std::string away = fmt::format("(*x - {})", number(input.gain_about.value_or(0)));
+      out += fmt::format(" + {} * {} * {}", number(*input.gain_sd * *input.gain_sd), away, away);
+    }
+    return out;
   }
 
   /// Of a method that states none.
   std::string measured_deviation() const {
     if (algorithm_.sd.size() != 1) return "";
     return fmt::format(
-        "  for (i = 0; i < N && usable(samples[i]); ++i) {{\n  }}\n  if (given && variance < 0 && i == N) *sd = {};\n",
-        fusion::c_number(std::hypot(algorithm_.sd[0], learnt_.inputs[0].level_sd.value_or(0)), options_.single));
+        "  for (i = 0; i < N && usable(samples[i]); ++i) {{\n  }}\n  if (given && variance < 0 && i == N) *sd = "
+        "SQRT({}{});\n",
+        fusion::c_number(algorithm_.sd[0] * algorithm_.sd[0], options_.single), common_variance());
   }
 
   const LearntFusion& learnt_;

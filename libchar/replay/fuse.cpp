@@ -440,7 +440,7 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
       const auto at = static_cast<Eigen::Index>(k);
       const double x = x_(j, at);
       double sd = stated(j, variance_(j, at), all.col(at));
-      if (const auto level = learnt_.inputs[static_cast<std::size_t>(j)].level_sd) sd = std::hypot(sd, *level);
+      sd = learnt_.inputs[static_cast<std::size_t>(j)].with_common(sd, x);
       if (doubt != nullptr && (*doubt)[k].more > 0) sd = std::sqrt((*doubt)[k].of(sd * sd));
       out_[static_cast<std::size_t>(j)][k] = std::isfinite(x) ? x : kMissing;
       out_[r + static_cast<std::size_t>(j)][k] = std::isfinite(x) && std::isfinite(sd) ? sd : kMissing;

@@ -28,6 +28,10 @@ const Fields<LearntInput> kLearntInputFields = {
     field<&LearntInput::level_sd>("level_sd", {.range = kNotNegative,
                                                .meaning = "deviation of the mean of the sensors' means",
                                                .otherwise = "offsets are not taken out"}),
+    field<&LearntInput::gain_sd>(
+        "gain_sd",
+        {.range = kNotNegative, .meaning = "deviation of the gain that all share", .otherwise = "not known"}),
+    field<&LearntInput::gain_about>("gain_about", {.meaning = "input at which it does not matter", .otherwise = "0"}),
 };
 
 const Fields<LearntFrom> kLearntFromFields = {
@@ -229,7 +233,8 @@ const Fields<LearntFusion> kFusionContent = {
     list_of<&LearntFusion::inputs>(
         "inputs", kLearntInputFields,
         {.meaning = "what is estimated: `name`, `unit`, `reference_offset`: subtracted from the reference, "
-                    "`level_sd`: deviation of the level, by what the sensors' means differ",
+                    "`level_sd`: deviation of the level, by what the sensors' means differ, `gain_sd`: of the gain "
+                    "that all share, by what their gains differ (times the distance of the input from `gain_about`)",
          .required = true,
          .form = Entry::Form::flow}),
     field<&LearntFusion::interpolation>(

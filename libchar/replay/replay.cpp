@@ -141,6 +141,8 @@ class Replay {
     const auto found = meter ? meter->level(taken_out()) : std::nullopt;
     if (!found) return;
     knowledge_.level_sd = found->sd;
+    if (found->gain_sd > 0) knowledge_.gain_sd = found->gain_sd;
+    knowledge_.gain_about = found->about;
     if (!found->matters || scene_.align) return;  // what is reported only is fused as recorded
     for (std::size_t k = 0; k < found->offsets.size(); ++k) knowledge_.offsets[live(k)] = found->offsets[k];
     instants_.set_offsets(knowledge_.offsets);
@@ -265,11 +267,16 @@ class Replay {
     watch_readings(samples, truth);
   }
 
-  // Of two sensors a reference tells which of them it is that reads otherwise.
+  // Of two sensors a reference tells which of them it is that reads otherwise; of more it shows what is lost in the
+  // noise of the others.
   void watch_readings(const Eigen::MatrixXd& samples, const Eigen::MatrixXd& truth) {
     push_reading(samples, watched_from(), watch_.readings);
-    if (!watch_.readings || watch_.readings->sensors() != 2 || truth.rows() != 1) return;
+    if (!watch_.readings || truth.rows() != 1) return;
     with_live(samples, [&](const auto& rows) {
+      if (watch_.readings->sensors() > 2) {
+        if (!watch_.beside_truth) watch_.beside_truth.emplace(rows.rows(), plan_.run_to - watched_from());
+        return watch_.beside_truth->push(rows, truth.row(0));
+      }
       Eigen::MatrixXd all(3, rows.cols());
       all << rows, truth;
       if (!watch_.with_truth) watch_.with_truth.emplace(3, plan_.run_to - watched_from());
@@ -441,7 +448,8 @@ class Replay {
   LearntFusion learnt_;
   struct {
     std::optional<StepNoiseMeter> steps;
-    std::optional<detail::ReadingMeter> readings, with_truth;  // of two sensors, beside the reference
+    std::optional<detail::ReadingMeter> readings, beside_truth;
+    std::optional<detail::ReadingMeter> with_truth;  // of two sensors and the reference
     std::optional<detail::TiltCheck> tilt;
   } watch_;
   std::optional<DetectionSweep> detection_;
@@ -650,7 +658,11 @@ void Replay::tell_readings(ReplayResult& out) const {
   }
   const detail::ReadingMeter& meter = watch_.with_truth ? *watch_.with_truth : *watch_.readings;
   const double start_s = instants_.info().start_s + static_cast<double>(watched_from()) / out.rate_hz;
-  detail::warn_of_readings(meter, names, units, {start_s, out.rate_hz}, taken, watch_.with_truth.has_value(),
+  const std::int64_t before = plan_.run_from - watched_from();
+  const detail::RunReadings run{meter, watch_.beside_truth ? &*watch_.beside_truth : nullptr,
+                                watch_.steps ? watch_.steps->changes() : std::vector<StepNoiseMeter::Change>{},
+                                start_s + static_cast<double>(before) / out.rate_hz};
+  detail::warn_of_readings(run, names, units, {start_s, out.rate_hz}, taken, watch_.with_truth.has_value(),
                            out.warnings);
   if (!aligned_) detail::warn_of_delays(watch_.readings->delays(), names, out.warnings);
 }

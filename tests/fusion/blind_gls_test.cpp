@@ -60,7 +60,8 @@ TEST_CASE("blind-gls: a sensor at a tenth of the rate takes nothing from the oth
   Eigen::MatrixXd holes = s.y;
   for (Eigen::Index k = 0; k < holes.cols(); ++k)
     if (k % 10 != 3) holes(4, k) = std::nan("");
-  auto whole = test::make("blind-gls", test::array(5)), slow = test::make("blind-gls", test::array(5));
+  const test::Values gauge{{"gauge", 1}};
+  auto whole = test::make("blind-gls", test::array(5), gauge), slow = test::make("blind-gls", test::array(5), gauge);
   const Eigen::MatrixXd a = test::run(*whole, s.y).x, b = test::run(*slow, holes).x;
   CHECK(b.allFinite());
   const Eigen::VectorXd g = *whole->weights(), h = *slow->weights();
@@ -123,4 +124,17 @@ TEST_CASE("blind-gls: the first gains come after three instants for each channel
     CHECK(variance.array().isNaN().count() == first - 1);
     CHECK(std::isnan(variance(0, first - 2)));
   }
+}
+
+TEST_CASE("blind-gls: the middle gain is one by default, also beside a turned sign") {
+  test::Gaussian gauss(12);
+  const double gain[] = {-1.0, 0.95, 1.0, 1.0, 1.1};
+  BlindGls blind(test::array(5), test::settings("blind-gls", {}));
+  for (int k = 0; k < 4000; ++k) {
+    const double x = 3 * gauss();
+    double y[5];
+    for (int i = 0; i < 5; ++i) y[i] = gain[i] * x + 0.1 * gauss();
+    blind.step(Sample(y, 5));
+  }
+  for (int i = 0; i < 5; ++i) CHECK(blind.gain()[i] == Approx(gain[i]).margin(0.01));
 }

@@ -465,3 +465,32 @@ TEST_CASE("fuse: the noise of hundreds of sensors is told in closed form, sensor
     CHECK(found[static_cast<std::size_t>(i)]->log_variance == Approx(std::log(i % 2 == 0 ? 1.0 : 9.0)).margin(0.35));
   }
 }
+
+TEST_CASE("step noise: a sensor that becomes noisier is told beside others that are noisier still") {
+  const Eigen::Index n = 4, instants = 20000;
+  const double noise[] = {0.05, 0.4, 0.3, 0.5};
+  const auto changes = [&](double times, double motion, std::uint64_t seed) {
+    test::Gaussian gauss(seed);
+    StepNoiseMeter meter(Eigen::MatrixXd::Ones(n, 1), instants);
+    Eigen::MatrixXd y(n, instants);
+    for (Eigen::Index k = 0; k < instants; ++k) {
+      const bool late = 2 * k >= instants;
+      const double step = (late ? motion : 1) * gauss();
+      for (Eigen::Index i = 0; i < n; ++i)
+        y(i, k) = (1 + 0.02 * static_cast<double>(i)) * step + (i == 0 && late ? times : 1) * noise[i] * gauss();
+    }
+    meter.push(y);
+    return meter.changes();
+  };
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    const auto found = changes(5, 1, seed);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].sensor == 0);
+    CHECK(found[0].times < 7);
+    CHECK(found[0].times > (found[0].least ? 2 : 4));
+    CHECK(static_cast<double>(found[0].at) == Approx(0.5 * instants).epsilon(0.15));
+    CHECK(changes(1, 1, seed).empty());
+    CHECK(changes(1, 10, seed).empty());  // gains make noise of the motion
+  }
+}

@@ -115,6 +115,66 @@ TEST_CASE("fuse: standard deviations cover 92 to 97 % on another log, whatever t
   }
 }
 
+TEST_CASE("fuse: without a reference the deviation holds the gain that all sensors share, which nothing tells") {
+  // Gains that scatter by 5 %, of an input that moves by ten times the noise: one draw an array, so of many arrays.
+  const auto log = [](std::uint64_t array, std::uint64_t seed) {
+    test::Gaussian gains(array), gauss(seed);
+    double gain[4];
+    for (double& one : gain) one = 1 + 0.05 * gains();
+    std::string text = "t[s],a[deg/s],b[deg/s],c[deg/s],d[deg/s]\n";
+    for (int k = 0; k < kHonestRows; ++k) {
+      text += shortest(k / kHonestHz);
+      for (const double one : gain) text += "," + shortest(one * honest_truth(k) + 0.15 * gauss());
+      text += "\n";
+    }
+    return text;
+  };
+  double sum[2] = {};
+  constexpr int kArrays = 16;
+  for (std::uint64_t array = 1; array <= kArrays; ++array) {
+    const test::SceneBench bench;
+    bench.put("log.csv", log(array, 100 + array));
+    bench.put("new.csv", log(array, 200 + array));
+    const Scene scene = bench.read(
+        "format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, b, c, d]\nalgorithms: [minque, blind-gls]\n");
+    const LearntFusion learnt = parse_fusion_file(fusion_yaml(replay(scene, {}).learnt), "fusion.yaml");
+    CHECK(learnt.inputs.at(0).gain_sd > 0.003);
+    for (const bool gls : {false, true}) {
+      KeptColumns kept;
+      FuseOptions options;
+      options.algorithm = gls ? "blind-gls" : "minque";
+      fuse(bench.path("new.csv"), learnt, kept, options);
+      sum[gls ? 1 : 0] += coverage(kept) / kArrays;
+    }
+  }
+  for (const double share : sum) CHECK(share >= 0.92);
+}
+
+TEST_CASE("replay: beside a reference noise and gains are seen that are lost in the noise of the other sensors") {
+  // Of three sensors one is three times as noisy, or has a tenth less gain, in the last third.
+  for (const bool gain : {false, true}) {
+    const test::SceneBench bench;
+    test::Gaussian gauss(gain ? 7 : 8);
+    std::string text = "t[s],a[deg/s],b[deg/s],c[deg/s],x[deg/s]\n";
+    for (int k = 0; k < kHonestRows; ++k) {
+      const double x = honest_truth(k);
+      const bool late = 3 * k > 2 * kHonestRows;
+      const double a = (late && gain ? 0.9 : 1) * x + (late && !gain ? 3 : 1) * 0.1 * gauss();
+      const double b = x + 0.4 * gauss();
+      text += shortest(k / kHonestHz) + "," + shortest(a) + "," + shortest(b) + "," + shortest(x + 0.3 * gauss()) +
+              "," + shortest(x) + "\n";
+    }
+    bench.put("log.csv", text);
+    const ReplayResult result = replay(bench.read(
+        "format: scene\nversion: 1\nrecording: log.csv\nsensors: [a, b, c]\nreference: x\nalgorithms: [mean]\n"));
+    const Finding* found = result.warnings.find("sensor_failing");
+    REQUIRE(found != nullptr);
+    CHECK(found->where.rows.size() == 1);
+    CHECK_THAT(found->where.rows.at(0), StartsWith("a: "));
+    CHECK(result.warnings.find("sensor_unlike") == nullptr);
+  }
+}
+
 TEST_CASE("reading meter: offset, gain and scatter of a sensor beside the median of all") {
   test::Gaussian gauss(8);
   detail::ReadingMeter meter(5, 20000);

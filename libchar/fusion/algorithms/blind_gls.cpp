@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "libchar/core/numeric/median.hpp"
 #include "libchar/core/refusal.hpp"
 
 namespace libchar::fusion {
@@ -100,6 +101,7 @@ BlindGls::BlindGls(const Array& array, const Settings& settings)
       variance_(Eigen::VectorXd::Ones(array.channels)),
       mean_(Eigen::VectorXd::Zero(array.channels)),
       weight_(Eigen::VectorXd::Ones(array.channels)),
+      sorted_(static_cast<std::size_t>(array.channels)),
       next_(static_cast<double>(std::max<Eigen::Index>(20, 3 * array.channels))) {
   if (gauge_ > array.channels)
     throw usage_error("E0855")
@@ -115,9 +117,8 @@ bool BlindGls::take_factor() {
   moments_.covariance(covariance_);
   if (!factor_.solve(covariance_, 1, least, none_)) return false;
   const Eigen::VectorXd& g = factor_.factor();
-  double inverse = 0;
-  for (Eigen::Index i = 0; i < n; ++i) inverse += 1 / g[i];
-  const double one = gauge_ == 0 ? static_cast<double>(n) / inverse : g[gauge_ - 1];
+  sorted_.assign(g.begin(), g.end());
+  const double one = gauge_ == 0 ? median_in_place(sorted_) : g[gauge_ - 1];
   if (!std::isfinite(one) || !(std::abs(one) > 1e-9 * g.cwiseAbs().maxCoeff())) return false;
   gain_ = g / one;
   variance_ = factor_.noise();

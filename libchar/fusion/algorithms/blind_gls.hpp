@@ -2,13 +2,15 @@
 // Gains and noise variances of the channels without a reference, as the one factor of their covariance
 // (one_factor.hpp), then generalized least squares with both [Aitken 1936]:
 //   y_i - mean_i = g_i x + e_i,  x = c + sum p_i (y_i - mean_i) / sum p_i g_i,  p_i = g_i / v_i
-// c is the mean of the channels' means, the gauge of the gains (the first channel's is one, as in [RV 3.5], or the mean
-// of 1/g) what cannot be known without a reference. blind-calibration weighs its corrected channels alike; here a noisy
-// one counts as little as it should. A missing sample costs nothing but itself; solved after 20 instants, or three a
-// channel, and when the record has grown by a tenth.
+// c is the mean of the channels' means, the gauge of the gains what cannot be known without a reference: the middle
+// one is one (that of one channel is off by as much as a channel is, and a turned sign moves a mean), or that of a
+// channel. blind-calibration weighs its corrected channels alike; here a noisy one counts as little as it should. A
+// missing sample costs nothing but itself; solved after 20 instants, or three a channel, and when the record has grown
+// by a tenth.
 
 #include <Eigen/Core>
 #include <array>
+#include <vector>
 
 #include "libchar/fusion/algorithm.hpp"
 #include "libchar/fusion/detail/variances/one_factor.hpp"
@@ -55,8 +57,8 @@ struct BlindGls {
       .source = "Lawley & Maxwell 1971; Aitken 1936",
       .complexity = "O(n^2)",
       .needs = {.min_channels = 3, .max_channels = kMostPaired, .accepts_missing = true}};
-  static constexpr std::array options{Option{
-      "gauge", "", 1, 0, 1e6, "k: channel k (from 1) has gain one; 0: the mean of the inverse gains is one", true}};
+  static constexpr std::array options{
+      Option{"gauge", "", 0, 0, 1e6, "0: the middle gain is one; k: channel k (from 1) has gain one", true}};
   BlindGls(const Array& array, const Settings& settings);
   static double cost_ns(const Array& array, const Settings&) {
     const auto n = static_cast<double>(array.channels);
@@ -79,6 +81,7 @@ struct BlindGls {
   Eigen::MatrixXd covariance_;
   Eigen::VectorXd none_;                             // of the noise nothing is given
   Eigen::VectorXd gain_, variance_, mean_, weight_;  // weight_: p
+  std::vector<double> sorted_;                       // gains
   double instants_ = 0, next_, centre_ = 0;
   bool solved_ = false;
 };

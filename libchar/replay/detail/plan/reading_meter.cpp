@@ -33,6 +33,7 @@ constexpr double kMostOfOutlier = 3;  // times a mean of outliers alone, at leas
 
 constexpr double kLeastDrift = 0.05;   // of a gain
 constexpr double kLeastSignal = 10;    // times the noise, of the squares that show a gain
+constexpr double kLeastBetween = 300;  // the same, of the means of blocks
 constexpr double kOtherSign = -1.25;   // beyond one, of a gain: noise alone gives none below -1
 constexpr double kOffsetsCount = 0.2;  // of the mean square of differences
 constexpr double kResolved = 5;        // standard errors of an offset, or of a delay
@@ -90,64 +91,83 @@ void ReadingMeter::expect(const Readings& learnt) {
   whole_ = std::max(whole_, static_cast<double>(block_));
 }
 
-void ReadingMeter::push(const Eigen::MatrixXd& samples) {
-  for (Eigen::Index k = 0; k < samples.cols(); ++k) {
+// Median of all, of what each is beside it where some are missing.
+double ReadingMeter::middle(const Eigen::MatrixXd& samples, Eigen::Index at, bool& enough, bool& whole) {
+  sorted_.clear();
+  for (const double y : samples.col(at))
+    if (fusion::usable(y)) sorted_.push_back(y);
+  enough = sorted_.size() >= std::min(kLeastSensors, n_);
+  whole = sorted_.size() == n_;
+  double u = enough ? median_in_place(sorted_) : 0;
+  if (enough && !whole && whole_ >= static_cast<double>(block_)) {
     sorted_.clear();
-    for (const double y : samples.col(k))
-      if (fusion::usable(y)) sorted_.push_back(y);
-    const bool enough = sorted_.size() >= std::min(kLeastSensors, n_);
-    const bool whole = sorted_.size() == n_;
-    double u = enough ? median_in_place(sorted_) : 0;
-    if (enough && !whole && whole_ >= static_cast<double>(block_)) {
-      sorted_.clear();
-      for (std::size_t i = 0; i < n_; ++i)
-        if (const double y = samples(static_cast<Eigen::Index>(i), k); fusion::usable(y))
-          sorted_.push_back(y - usual_[i].offset - usual_[i].gain * u);
-      u = median_in_place(sorted_);
-    }
-    whole_ += whole ? 1 : 0;
-    for (std::size_t i = 0; enough && i < n_; ++i) {
-      const double y = samples(static_cast<Eigen::Index>(i), k);
-      if (!fusion::usable(y)) continue;
-      if (whole) usual_[i].offset += (y - u - usual_[i].offset - usual_[i].gain * u) / whole_;
-      Sums& s = now_[i];
-      if (s.n == 0) {
-        s.u0 = u;
-        s.r0 = y - u;
-      }
-      const double du = u - s.u0, dr = y - u - s.r0;
-      if (s.last >= 0 && s.last + 1 == seen_) {
-        const double step_u = du - s.last_u, step_r = dr - s.last_r;
-        s.steps += 1;
-        s.suu += step_u * step_u;
-        s.sur += step_u * step_r;
-        s.srr += step_r * step_r;
-        s.largest = std::max(s.largest, step_r * step_r);
-        if (s.motion.at >= 0 && s.motion.at + 2 == seen_) {
-          const double m = 0.5 * (du - s.motion.u);
-          s.motion.n += 1;
-          s.motion.m += m;
-          s.motion.mm += m * m;
-          s.motion.mu += m * s.last_u;
-          s.motion.mr += m * s.last_r;
-        }
-        s.motion.u = s.last_u;
-        s.motion.at = s.last;
-        neighbours_[i].all += 1;
-        neighbours_[i].same += y == neighbours_[i].last ? 1 : 0;
-      }
-      neighbours_[i].last = y;
-      s.last_u = du;
-      s.last_r = dr;
-      s.last = seen_;
-      s.n += 1;
-      s.u += du;
-      s.r += dr;
-      s.uu += du * du;
-      s.ur += du * dr;
-      s.rr += dr * dr;
-    }
+    for (std::size_t i = 0; i < n_; ++i)
+      if (const double y = samples(static_cast<Eigen::Index>(i), at); fusion::usable(y))
+        sorted_.push_back(y - usual_[i].offset - usual_[i].gain * u);
+    u = median_in_place(sorted_);
+  }
+  whole_ += whole ? 1 : 0;
+  return u;
+}
+
+void ReadingMeter::push(const Eigen::MatrixXd& samples) {
+  bool enough = false, whole = false;
+  for (Eigen::Index k = 0; k < samples.cols(); ++k) {
+    const double u = middle(samples, k, enough, whole);
+    if (enough) take(samples, k, u, whole);
     if (++seen_ % block_ == 0) close();
+  }
+}
+
+void ReadingMeter::push(const Eigen::MatrixXd& samples, const Eigen::RowVectorXd& truth) {
+  truth_ = true;
+  for (Eigen::Index k = 0; k < samples.cols(); ++k) {
+    if (fusion::usable(truth[k])) take(samples, k, truth[k], false);
+    if (++seen_ % block_ == 0) close();
+  }
+}
+
+void ReadingMeter::take(const Eigen::MatrixXd& samples, Eigen::Index at, double u, bool whole) {
+  for (std::size_t i = 0; i < n_; ++i) {
+    const double y = samples(static_cast<Eigen::Index>(i), at);
+    if (!fusion::usable(y)) continue;
+    if (whole) usual_[i].offset += (y - u - usual_[i].offset - usual_[i].gain * u) / whole_;
+    Sums& s = now_[i];
+    if (s.n == 0) {
+      s.u0 = u;
+      s.r0 = y - u;
+    }
+    const double du = u - s.u0, dr = y - u - s.r0;
+    if (s.last >= 0 && s.last + 1 == seen_) {
+      const double step_u = du - s.last_u, step_r = dr - s.last_r;
+      s.steps += 1;
+      s.suu += step_u * step_u;
+      s.sur += step_u * step_r;
+      s.srr += step_r * step_r;
+      s.largest = std::max(s.largest, step_r * step_r);
+      if (s.motion.at >= 0 && s.motion.at + 2 == seen_) {
+        const double m = 0.5 * (du - s.motion.u);
+        s.motion.n += 1;
+        s.motion.m += m;
+        s.motion.mm += m * m;
+        s.motion.mu += m * s.last_u;
+        s.motion.mr += m * s.last_r;
+      }
+      s.motion.u = s.last_u;
+      s.motion.at = s.last;
+      neighbours_[i].all += 1;
+      neighbours_[i].same += y == neighbours_[i].last ? 1 : 0;
+    }
+    neighbours_[i].last = y;
+    s.last_u = du;
+    s.last_r = dr;
+    s.last = seen_;
+    s.n += 1;
+    s.u += du;
+    s.r += dr;
+    s.uu += du * du;
+    s.ur += du * dr;
+    s.rr += dr * dr;
   }
 }
 
@@ -173,10 +193,11 @@ bool ReadingMeter::outlying(const Sums& s, double usual_rms) {
   return s.largest > least * least;
 }
 
-// What moves is the input: the median's own noise would be taken for gains, of a noisier sensor above one.
-bool ReadingMeter::tells_gains() const {
+// Variance of the median's own noise, and mean square of what moves in the blocks.
+double ReadingMeter::median_noise(double& moves) const {
   std::vector<double> noise;
-  double moves = 0, n = 0;
+  double n = 0;
+  moves = 0;
   for (std::size_t i = 0; i < n_; ++i) {
     double uu = 0, ur = 0, rr = 0, all = 0;
     for (const auto& block : blocks_) {
@@ -192,22 +213,61 @@ bool ReadingMeter::tells_gains() const {
     moves += uu;
     n += all;
   }
-  if (noise.empty()) return false;
-  const double median = kMedianError * kMedianError * median_in_place(noise) / static_cast<double>(noise.size());
-  return moves / n > kLeastSignal * median;
+  if (noise.empty()) return 0;
+  moves /= n;
+  if (truth_) return 0;
+  return kMedianError * kMedianError * median_in_place(noise) / static_cast<double>(noise.size());
+}
+
+// What moves is the input: the median's own noise would be taken for gains, of a noisier sensor above one.
+bool ReadingMeter::tells_gains() const {
+  double moves = 0;
+  const double noise = median_noise(moves);
+  return moves > kLeastSignal * noise;
+}
+
+std::vector<ReadingMeter::Squares> ReadingMeter::squares_within(std::size_t sensor, std::size_t from,
+                                                                std::size_t to) const {
+  std::vector<Squares> out;
+  for (std::size_t k = from; k < to; ++k) {
+    const Sums& s = blocks_[k][sensor];
+    if (s.n >= kLeastInBlock) out.push_back({s.uu - s.u * s.u / s.n, s.ur - s.u * s.r / s.n, s.rr - s.r * s.r / s.n});
+  }
+  return out;
+}
+
+// Of the means of neighbours, with the noise of a sample: of an input that hardly moves within a block.
+std::vector<ReadingMeter::Squares> ReadingMeter::squares_between(std::size_t sensor, std::size_t from,
+                                                                 std::size_t to) const {
+  std::vector<Squares> out;
+  const Sums* before = nullptr;
+  for (std::size_t k = from; k < to; ++k) {
+    const Sums& s = blocks_[k][sensor];
+    if (s.n < kLeastInBlock) continue;
+    if (before != nullptr) {
+      const double u = s.u0 + s.u / s.n - before->u0 - before->u / before->n;
+      const double r = s.r0 + s.r / s.n - before->r0 - before->r / before->n;
+      const double weight = 0.5 * std::min(s.n, before->n);
+      out.push_back({weight * u * u, weight * u * r, weight * r * r});
+    }
+    before = &s;
+  }
+  return out;
+}
+
+ReadingMeter::Slopes ReadingMeter::slopes_of(const std::vector<Squares>& squares) {
+  Slopes out;
+  for (const Squares& one : squares)
+    if (one.uu > 0) out.emplace_back(one.ur / one.uu, one.uu);
+  return out;
 }
 
 ReadingMeter::Readings ReadingMeter::readings(double share, double mean_factor, double rms_factor) const {
   Readings out(n_);
   const bool gains = tells_gains();
   for (std::size_t i = 0; i < n_; ++i) {
-    std::vector<std::pair<double, double>> slopes;
+    Slopes slopes = slopes_of(squares_within(i, 0, blocks_.size()));
     std::vector<double> left, means, scatter, clean;
-    for (const auto& block : blocks_) {
-      const Sums& s = block[i];
-      const double variance = s.uu - s.u * s.u / std::max(1.0, s.n);
-      if (s.n >= kLeastInBlock && variance > 0) slopes.emplace_back((s.ur - s.u * s.r / s.n) / variance, variance);
-    }
     if (slopes.size() < kLeastBlocks) continue;
     LearntSensor::Reading reading;
     const double gain = weighted_median(std::move(slopes));
@@ -238,7 +298,7 @@ ReadingMeter::Readings ReadingMeter::learnt() const {
   Readings out = result();
   const Readings usual = steady();
   for (const Change& change : changes(usual, true)) {
-    if (n_ == 2) return usual;
+    if (pair()) return usual;
     out[change.sensor] = usual[change.sensor];
   }
   return out;
@@ -258,16 +318,17 @@ std::vector<double> ReadingMeter::with_outliers(const Readings& readings) const 
   return out;
 }
 
-namespace {
-
-struct Place {
+struct ReadingMeter::Place {
   double offset = 0, noise = 0, error = 0;  // standard error of the offset
 };
 
-double weight_of(const Place& one, bool alike) { return alike || !(one.noise > 0) ? 1 : 1 / (one.noise * one.noise); }
+namespace {
+
+double weight_of(const auto& one, bool alike) { return alike || !(one.noise > 0) ? 1 : 1 / (one.noise * one.noise); }
 
 /// Deviation of the weighted mean of offsets, widened to hold 95 % as normal errors do: of those that are draws of one
 /// kind, and all of what those weigh that stand apart from them.
+template <class Place>
 double level_deviation(const std::vector<Place>& near, const std::vector<Place>& apart, bool alike) {
   const auto n = static_cast<double>(near.size());
   double mean = 0, squares = 0, w = 0, ww = 0, off = 0;
@@ -286,6 +347,39 @@ double level_deviation(const std::vector<Place>& near, const std::vector<Place>&
 }
 
 }  // namespace
+
+// As of the level, of the gains of the sensors where what moves tells them: those that stand apart are said, and not
+// fused alike. What the slopes scatter is no difference between sensors.
+double ReadingMeter::common_gain_sd(const std::vector<Place>& places, const std::vector<TakenOut>& taken_out) const {
+  double moves = 0, errors = 0;
+  const double noise = median_noise(moves);
+  std::vector<double> gains;
+  for (std::size_t i = 0; i < n_; ++i) {
+    Slopes all = moves > kLeastSignal * noise ? slopes_of(squares_within(i, 0, blocks_.size())) : Slopes{};
+    double weights = 0, squares = 0, between = 0;
+    const Slopes slow = slopes_of(squares_between(i, 0, blocks_.size()));
+    for (const auto& [slope, weight] : slow) between += weight;
+    if (between > kLeastSignal * noise * static_cast<double>(slow.size()))
+      all.insert(all.end(), slow.begin(), slow.end());
+    if (all.size() < kLeastBlocks) return 0;
+    gains.push_back(weighted_median(all));
+    for (const auto& [slope, weight] : all) {
+      weights += weight;
+      squares += weight * weight * (slope - gains.back()) * (slope - gains.back());
+    }
+    errors += squares / weights / weights / static_cast<double>(n_);
+    gains.back() += taken_out[i].gain;
+  }
+  const std::vector<bool> apart = standing_apart(gains);
+  std::vector<Place> near;
+  for (std::size_t i = 0; i < n_; ++i)
+    if (!apart[i]) near.push_back({gains[i], places[i].noise, 0});
+  double mean = 0, squares = 0;
+  for (const Place& one : near) mean += one.offset / static_cast<double>(near.size());
+  for (const Place& one : near) squares += (one.offset - mean) * (one.offset - mean);
+  const double variance = squares / static_cast<double>(near.size() - 1);
+  return level_deviation(near, {}, false) * std::sqrt(variance > 0 ? std::max(0.0, 1 - errors / variance) : 0);
+}
 
 std::optional<ReadingMeter::Level> ReadingMeter::level(const std::vector<TakenOut>& taken_out) const {
   if (n_ < kLeastSensors) return std::nullopt;
@@ -329,6 +423,8 @@ std::optional<ReadingMeter::Level> ReadingMeter::level(const std::vector<TakenOu
     if (apart[i] && !taken && !all) others.push_back(places[i]);
   }
   out.sd = level_deviation(alike, others, all);
+  out.about = input;
+  out.gain_sd = common_gain_sd(places, taken_out);
   return out;
 }
 
@@ -405,17 +501,23 @@ struct PartGain {
 std::optional<ReadingMeter::Line> ReadingMeter::gain_line(std::size_t sensor) const {
   std::vector<PartGain> parts;
   for (std::size_t part = 0; part < kParts; ++part) {
-    double uu = 0, ur = 0, rr = 0, scatter = 0;
-    const auto each = [&](const auto& work) {
-      for (std::size_t k = part * blocks_.size() / kParts; k < (part + 1) * blocks_.size() / kParts; ++k) {
-        const Sums& s = blocks_[k][sensor];
-        if (s.n >= kLeastInBlock) work(s.uu - s.u * s.u / s.n, s.ur - s.u * s.r / s.n, s.rr - s.r * s.r / s.n);
-      }
-    };
-    each([&](double a, double b, double c) { uu += a, ur += b, rr += c; });
-    if (!(uu > 0) || !(uu > kLeastSignal * (rr - ur * ur / uu))) continue;  // the median's noise would be the gain's
+    const std::size_t from = part * blocks_.size() / kParts, to = (part + 1) * blocks_.size() / kParts;
+    std::vector<Squares> all;
+    for (const bool between : {false, true}) {
+      const std::vector<Squares> some = between ? squares_between(sensor, from, to) : squares_within(sensor, from, to);
+      Squares sum;
+      for (const Squares& one : some) sum.uu += one.uu, sum.ur += one.ur, sum.rr += one.rr;
+      // The median's noise would be the gain's, and that of few differences between blocks is hardly known.
+      const double least = between ? kLeastBetween : kLeastSignal;
+      if (between && some.size() < kLeastBlocks) continue;
+      if (sum.uu > 0 && sum.uu > least * (sum.rr - sum.ur * sum.ur / sum.uu))
+        all.insert(all.end(), some.begin(), some.end());
+    }
+    if (all.empty()) continue;
+    double uu = 0, ur = 0, scatter = 0;
+    for (const Squares& one : all) uu += one.uu, ur += one.ur;
     const double gain = ur / uu;
-    each([&](double a, double b, double) { scatter += (b - gain * a) * (b - gain * a); });
+    for (const Squares& one : all) scatter += (one.ur - gain * one.uu) * (one.ur - gain * one.uu);
     parts.push_back({uu, gain, (static_cast<double>(part) + 0.5) / kParts, scatter / uu / uu});
   }
   if (parts.size() < kLeastParts) return std::nullopt;
@@ -474,8 +576,8 @@ bool ReadingMeter::beyond(const Sums& s, const LearntSensor::Reading& usual, con
 
 // A sensor in the middle is the median itself, and its scatter nothing, for as long as the signal holds it there:
 // what scatters less than the middle sensor is taken to scatter as much. Two are off their mean alike.
-ReadingMeter::Limits ReadingMeter::limits(const Readings& learnt, bool quieter) {
-  if (learnt.size() == 2) return {0, quieter};
+ReadingMeter::Limits ReadingMeter::limits(const Readings& learnt, bool quieter) const {
+  if (truth_ || learnt.size() == 2) return {0, quieter};
   std::vector<double> rms;
   for (const auto& one : learnt)
     if (one) rms.push_back(one->usual_rms);
@@ -495,7 +597,7 @@ std::vector<double> ReadingMeter::motion_factors(std::size_t sensor, const Learn
     const Sums& s = blocks_[k][sensor];
     if (s.n < kLeastInBlock || s.steps < kLeastInBlock) continue;
     const double rms = fit(s, usual.offset, usual.gain).rms;
-    all.push_back({std::max(0.0, s.suu - (n_ == 2 ? s.srr : 0)) / s.steps, rms * rms, k});
+    all.push_back({std::max(0.0, s.suu - (pair() ? s.srr : 0)) / s.steps, rms * rms, k});
   }
   if (all.size() < kLeastBlocks) return out;
   std::sort(all.begin(), all.end(), [](const Block& a, const Block& b) { return a.motion < b.motion; });
@@ -634,11 +736,11 @@ std::vector<ReadingMeter::Change> ReadingMeter::changes(const Readings& learnt, 
     one.to_end = last + 1 == static_cast<std::int64_t>(blocks_.size());
     out.push_back(one);
   }
-  if (n_ == 2) {
+  if (pair()) {
     out.resize(std::min<std::size_t>(out.size(), 1));
     return out;
   }
-  out = own_changes(std::move(out), learnt);
+  if (!truth_) out = own_changes(std::move(out), learnt);
   // Where most change it is what they see that does: motion, and how the sensors differ in it.
   if (quieter && 2 * out.size() > learnt.size()) out.clear();
   return out;

@@ -33,6 +33,8 @@ class ReadingMeter {
   std::size_t sensors() const { return n_; }
   /// A column an instant, a row a sensor; missing samples are left out.
   void push(const Eigen::MatrixXd& samples);
+  /// The same beside a reference, a value an instant, in the place of the median: in every call or in none.
+  void push(const Eigen::MatrixXd& samples, const Eigen::RowVectorXd& truth);
   using Readings = std::vector<std::optional<LearntSensor::Reading>>;
   /// Of each sensor; none where it has too few samples. What is usual holds for nine blocks of ten.
   Readings result() const;
@@ -47,6 +49,8 @@ class ReadingMeter {
     std::vector<double> offsets;  ///< 0: not worth taking out
     bool matters = false;         ///< one of them is not
     double sd = 0;                ///< 1.96 of it hold 95 % of the level
+    double about = 0;             ///< the middle input, of which it is
+    double gain_sd = 0;           ///< the same of the gain that all share, by what those of the sensors differ
   };
   std::optional<Level> level(const std::vector<TakenOut>& taken_out) const;
 
@@ -123,7 +127,10 @@ class ReadingMeter {
     double least = 0;  ///< what scatters less is taken to scatter so much
     bool quieter = false;
   };
-  static Limits limits(const Readings& learnt, bool quieter);
+  Limits limits(const Readings& learnt, bool quieter) const;
+  double middle(const Eigen::MatrixXd& samples, Eigen::Index at, bool& enough, bool& whole);
+  void take(const Eigen::MatrixXd& samples, Eigen::Index at, double u, bool whole);
+  bool pair() const { return n_ == 2 && !truth_; }
   static bool outlying(const Sums& sums, double usual_rms);
   static bool beyond(const Sums& sums, const LearntSensor::Reading& usual, const Limits& limits, double motion);
   std::vector<double> motion_factors(std::size_t sensor, const LearntSensor::Reading& usual) const;
@@ -144,8 +151,19 @@ class ReadingMeter {
   Readings readings(double share, double mean_factor, double rms_factor) const;
   bool tells_gains() const;
   std::optional<Line> gain_line(std::size_t sensor) const;
+  using Slopes = std::vector<std::pair<double, double>>;  // with their weights
+  struct Squares {
+    double uu = 0, ur = 0, rr = 0;  // sums about the mean
+  };
+  std::vector<Squares> squares_within(std::size_t sensor, std::size_t from, std::size_t to) const;
+  std::vector<Squares> squares_between(std::size_t sensor, std::size_t from, std::size_t to) const;
+  static Slopes slopes_of(const std::vector<Squares>& squares);
+  double median_noise(double& moves) const;
+  struct Place;
+  double common_gain_sd(const std::vector<Place>& places, const std::vector<TakenOut>& taken_out) const;
 
   std::size_t n_;
+  bool truth_ = false;  // u is a reference
   std::int64_t block_, stride_ = 1, seen_ = 0, closed_ = 0;
   std::vector<Sums> now_;
   struct Neighbours {

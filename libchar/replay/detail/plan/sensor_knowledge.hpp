@@ -40,6 +40,8 @@ class RestMeter {
 struct SensorKnowledge {
   std::vector<double> offsets;
   std::optional<double> level_sd;          ///< of the level, where no reference says it
+  std::optional<double> gain_sd;           ///< the same of the gain that all sensors share
+  double gain_about = 0;                   ///< input at which it does not matter
   std::vector<double> noise_variances;     ///< NaN: not known
   std::vector<std::string> noise_sources;  ///< "the scene", "the models", "rest", ""
 };

@@ -139,13 +139,15 @@ void add(Findings& warnings, std::string_view code, std::string sentence, const 
   for (const Said& one : sensors) warnings.add(code, sentence, one.name + ": " + one.text);
 }
 
-void warn_of_apart(const Throughout& all, const Sensors& of, Findings& warnings) {
+void warn_of_apart(const Throughout& all, const Sensors& of, const std::vector<Said>& failing, Findings& warnings) {
   const auto sure = all.words(of, true), suspected = all.words(of, false);
   std::vector<Said> apart, unlike;
   for (std::size_t i = 0; i < sure.size(); ++i) {
     std::vector<std::string> words = sure[i];
     for (const std::string& one : suspected[i])
       if (std::find(words.begin(), words.end(), one) == words.end()) words.push_back(one);
+    const auto fails = [&](const Said& one) { return one.name == of.name(i); };
+    if (sure[i].empty() && std::any_of(failing.begin(), failing.end(), fails)) continue;  // it is decided
     if (!words.empty())
       (sure[i].empty() ? unlike : apart).push_back({of.name(i), fmt::format("{}", fmt::join(words, ", "))});
   }
@@ -180,23 +182,53 @@ std::vector<Said> changes_said(const std::vector<ReadingMeter::Change>& changes,
 
 }  // namespace
 
-void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>& names,
+namespace {
+
+/// Sensors that `said` does not name yet.
+void add_unsaid(const std::vector<Said>& more, std::vector<Said>& out, const std::vector<Said>& said) {
+  for (const Said& one : more) {
+    const auto same = [&](const Said& other) { return other.name == one.name; };
+    if (std::none_of(said.begin(), said.end(), same) && std::none_of(out.begin(), out.end(), same)) out.push_back(one);
+  }
+}
+
+/// What changes within a run, by the offset, the scatter or the gain.
+std::vector<Said> failing_in_run(const ReadingMeter& meter, const Sensors& of, const Clock& clock,
+                                 const std::vector<TakenOut>& taken_out) {
+  std::vector<Said> out = changes_said(meter.changes(meter.steady(), true), of, clock), drifts;
+  for (const ReadingMeter::GainDrift& drift : meter.gain_drifts(kFalseAlarm)) {
+    const double before = 1 + taken_out[drift.sensor].gain;
+    drifts.push_back(
+        {of.name(drift.sensor), fmt::format("its gain drifts from {} to {}", brief_text(before + drift.from, 3),
+                                            brief_text(before + drift.to, 3))});
+  }
+  add_unsaid(drifts, out, {});
+  return out;
+}
+
+}  // namespace
+
+void warn_of_readings(const RunReadings& run, const std::vector<std::string>& names,
                       const std::vector<std::string>& units, const Clock& clock, const std::vector<TakenOut>& taken_out,
                       bool reference, Findings& warnings) {
   const Sensors of{names, units};
+  const ReadingMeter& meter = run.meter;
   ReadingMeter::Readings steady = meter.steady();
   Throughout all{{}, meter.slow_scatter(steady), meter.repeated(), meter.with_outliers(steady)};
   all.reference = reference;
-  std::vector<Said> failing = changes_said(meter.changes(steady, true), of, clock);
-  for (const ReadingMeter::GainDrift& drift : meter.gain_drifts(kFalseAlarm)) {
-    const auto said = [&](const Said& one) { return one.name == of.name(drift.sensor); };
-    const double before = 1 + taken_out[drift.sensor].gain;
-    if (std::none_of(failing.begin(), failing.end(), said))
-      failing.push_back(
-          {of.name(drift.sensor), fmt::format("its gain drifts from {} to {}", brief_text(before + drift.from, 3),
-                                              brief_text(before + drift.to, 3))});
+  std::vector<Said> failing = failing_in_run(meter, of, clock, taken_out), beside, noisier;
+  if (run.beside_truth != nullptr) add_unsaid(failing_in_run(*run.beside_truth, of, clock, taken_out), beside, failing);
+  for (const StepNoiseMeter::Change& one : run.noise) {
+    const bool less = one.times < 1;
+    const double at_s = run.noise_from_s + static_cast<double>(one.at) / clock.rate_hz;
+    noisier.push_back({of.name(one.sensor), fmt::format("{}{} times as noisy {} {}", one.least ? "at least " : "",
+                                                        brief_text(less ? 1 / one.times : one.times, 2),
+                                                        less ? "until" : "from", duration_text(at_s))});
   }
+  add_unsaid(noisier, failing, beside);
   add(warnings, "sensor_failing", "sensors read otherwise, relative to the others, than for most of the run", failing);
+  add(warnings, "sensor_failing", "sensors read otherwise, relative to the reference, than for most of the run",
+      beside);
   std::vector<double> rms;
   for (std::size_t i = 0; i < steady.size(); ++i) {
     all.level = all.level || taken_out[i].offset != 0;
@@ -208,7 +240,8 @@ void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>&
   if (rms.size() < 3) return;
   all.noise = median_in_place(rms);
   all.steady = std::move(steady);
-  warn_of_apart(all, of, warnings);
+  failing.insert(failing.end(), beside.begin(), beside.end());
+  warn_of_apart(all, of, failing, warnings);
 }
 
 void warn_of_delays(const std::vector<ReadingMeter::Delay>& delays, const std::vector<std::string>& names,

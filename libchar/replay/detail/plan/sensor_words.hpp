@@ -6,6 +6,7 @@
 // cannot be distinguished from its kind: of three sensors two say little about the third.
 
 #include "libchar/replay/detail/plan/reading_meter.hpp"
+#include "libchar/replay/detail/plan/step_noise.hpp"
 
 namespace libchar::detail {
 
@@ -14,9 +15,17 @@ struct Clock {
   double start_s = 0, rate_hz = 1;
 };
 
+/// What was read in a run.
+struct RunReadings {
+  const ReadingMeter& meter;
+  const ReadingMeter* beside_truth = nullptr;  ///< the same sensors beside a reference
+  std::vector<StepNoiseMeter::Change> noise = {};
+  double noise_from_s = 0;  ///< time of the first instant of these
+};
+
 /// Sensors that read otherwise than they do for most of the log they are judged by, or than all
 /// others throughout. `taken_out`: what the meter did not see. `reference`: the last of them is no sensor.
-void warn_of_readings(const ReadingMeter& meter, const std::vector<std::string>& names,
+void warn_of_readings(const RunReadings& run, const std::vector<std::string>& names,
                       const std::vector<std::string>& units, const Clock& clock, const std::vector<TakenOut>& taken_out,
                       bool reference, Findings& warnings);
 

@@ -19,7 +19,10 @@ constexpr std::int64_t kStretchesOfNoise = 32;
 /// Pairs of instants in a stretch, at least.
 constexpr std::int64_t kPairsInStretch = 16;
 constexpr double kBeyondDoubt = 6;
-constexpr double kWorthSaying = 1.25;  // of deviations
+constexpr double kWorthSaying = 1.25;     // of deviations
+constexpr std::size_t kLeastOfSplit = 8;  // stretches before and behind it
+constexpr double kSplitBeyondDoubt = 9;   // standard errors, at the place that explains most
+constexpr double kSplitTimes = 1.5;       // of deviations
 
 double median_of_stretches(std::vector<double> values) { return median_in_place(values, Middle::upper); }
 
@@ -66,6 +69,7 @@ void StepNoiseMeter::push(const Eigen::MatrixXd& samples) {
     }
     if (!complete || !has_last_) continue;
     e_ = samples.col(k) - last_;
+    moves_ += e_.mean() * e_.mean();
     if (one_input_alike_)
       e_.array() -= e_.mean();
     else
@@ -87,12 +91,20 @@ Eigen::VectorXd StepNoiseMeter::solved(const Eigen::VectorXd& squares) const {
 
 void StepNoiseMeter::close() {
   // Twice as many as were expected: two stretches become one of twice the length.
-  stretches_.push_back(solved(squares_ / static_cast<double>(pairs_)));
+  Eigen::VectorXd all(squares_.size() + 1);
+  all << solved(squares_ / static_cast<double>(pairs_)), moves_ / static_cast<double>(pairs_);
+  stretches_.push_back(std::move(all));
+  ends_.push_back(now_ + 1);
   squares_.setZero();
   pairs_ = 0;
+  moves_ = 0;
   if (std::ssize(stretches_) < 2 * kStretchesOfNoise) return;
-  for (std::size_t s = 0; s < kStretchesOfNoise; ++s) stretches_[s] = 0.5 * (stretches_[2 * s] + stretches_[2 * s + 1]);
+  for (std::size_t s = 0; s < kStretchesOfNoise; ++s) {
+    stretches_[s] = 0.5 * (stretches_[2 * s] + stretches_[2 * s + 1]);
+    ends_[s] = ends_[2 * s + 1];
+  }
   stretches_.resize(kStretchesOfNoise);
+  ends_.resize(kStretchesOfNoise);
   each_ *= 2;
 }
 
@@ -105,6 +117,58 @@ std::vector<std::optional<StepNoise>> StepNoiseMeter::result() const {
       logs.push_back(v[i] > 0 ? std::log(v[i]) : -std::numeric_limits<double>::infinity());
     out.push_back(typical(logs));
   }
+  return out;
+}
+
+StepNoiseMeter::Split StepNoiseMeter::split(Eigen::Index row, std::size_t at) const {
+  std::vector<double> parts[2], off;
+  for (std::size_t s = 0; s < stretches_.size(); ++s) parts[s < at ? 0 : 1].push_back(stretches_[s][row]);
+  const auto n = static_cast<double>(parts[0].size()), m = static_cast<double>(parts[1].size());
+  Split out{median_of_stretches(parts[0]), median_of_stretches(parts[1])};
+  double variance = 0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    off.clear();
+    for (const double value : parts[k]) off.push_back(std::abs(value - (k == 0 ? out.before : out.behind)));
+    const double deviation = kMedianError * kMadToSd * median_of_stretches(off);
+    variance += deviation * deviation / (k == 0 ? n : m);
+  }
+  out.error = std::sqrt(variance);
+  out.beyond = out.error > 0 ? std::abs(out.behind - out.before) / out.error : 0;
+  return out;
+}
+
+/// Stretches before the step that explains most of the squares about the mean.
+std::size_t StepNoiseMeter::step_place(Eigen::Index row) const {
+  const std::size_t n = stretches_.size();
+  double all = 0, sum = 0, most = -1;
+  for (const Eigen::VectorXd& one : stretches_) all += one[row];
+  std::size_t out = 0;
+  for (std::size_t at = 1; at + kLeastOfSplit <= n; ++at) {
+    sum += stretches_[at - 1][row];
+    const auto before = static_cast<double>(at), behind = static_cast<double>(n - at);
+    const double step = (all - sum) / behind - sum / before, explained = step * step * before * behind;
+    if (at >= kLeastOfSplit && explained > most) most = explained, out = at;
+  }
+  return out;
+}
+
+std::vector<StepNoiseMeter::Change> StepNoiseMeter::changes() const {
+  std::vector<Change> out;
+  if (std::ssize(stretches_) < kStretchesOfNoise / 2 || !identifiable()) return out;
+  const Eigen::Index n = squares_.size();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::size_t place = step_place(i);
+    const Split most = split(i, place);
+    if (most.beyond < kSplitBeyondDoubt) continue;
+    const double resolved = 2 * most.error;
+    const bool least = std::min(most.before, most.behind) < resolved;
+    const double ratio = std::max(most.behind, resolved) / std::max(most.before, resolved);
+    const Split motion = split(n, place);
+    const double moves = motion.before > 0 ? motion.behind / motion.before : 1;
+    if (std::max(ratio, 1 / ratio) > kSplitTimes * kSplitTimes * std::max({1.0, moves, 1 / moves}))
+      out.push_back({static_cast<std::size_t>(i), std::sqrt(ratio), least, ends_[place - 1]});
+  }
+  if (2 * std::ssize(out) > n) out.clear();  // it is what they see that changes
   return out;
 }
 

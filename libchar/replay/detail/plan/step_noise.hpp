@@ -31,11 +31,27 @@ class StepNoiseMeter {
   /// Of each sensor, none where it cannot be told; all alike when only their sum can (two sensors).
   /// Empty: too few instants.
   std::vector<std::optional<StepNoise>> result() const;
+  /// A sensor that is noisier before or behind a place in the run.
+  struct Change {
+    std::size_t sensor = 0;
+    double times = 1;     ///< the deviation behind it over that before
+    bool least = false;   ///< the smaller one is not resolved: it is as much at least
+    std::int64_t at = 0;  ///< instant
+  };
+  /// Beyond doubt, and by more than the input moves otherwise there: motion that sensors follow differently is no
+  /// noise.
+  std::vector<Change> changes() const;
   /// Each sensor's own can be told.
   bool identifiable() const { return inverse_.has_value() || many_alike_; }
 
  private:
   void close();
+  struct Split {
+    double before = 0, behind = 0, beyond = 0;  // medians, and their difference in standard errors
+    double error = 0;                           // of the difference
+  };
+  std::size_t step_place(Eigen::Index row) const;
+  Split split(Eigen::Index row, std::size_t at) const;
   Eigen::VectorXd solved(const Eigen::VectorXd& squares) const;
 
   Eigen::MatrixXd residual_;                // M; empty where many_alike_
@@ -46,7 +62,9 @@ class StepNoiseMeter {
   std::int64_t each_, now_ = 0, pairs_ = 0;
   Eigen::VectorXd last_, squares_, e_;
   bool has_last_ = false;
-  std::vector<Eigen::VectorXd> stretches_;  // v of each
+  std::vector<Eigen::VectorXd> stretches_;  // v of each sensor, and the mean square of the mean step
+  std::vector<std::int64_t> ends_;          // instants
+  double moves_ = 0;
 };
 
 /// What differs between here and where it was learnt, beyond doubt (six standard errors: below 1e-4 a
