@@ -42,6 +42,21 @@ TEST_CASE("digital: noise has no rails, no held values and no staircase, also wh
   }
 }
 
+TEST_CASE("digital: truncation towards zero is a dead band") {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed)
+    for (const double step : {0.05, 0.2, 0.5}) {
+      INFO("seed " << seed << ", step " << step);
+      std::vector<double> y = noise(seed);
+      for (double& value : y) value = std::trunc(value / (step * kSigma)) * (step * kSigma);
+      const auto found = test::digital_faults(y, kDigitalRate, step * kSigma).findings;
+      REQUIRE(found.size() == 1);
+      CHECK(found[0].code == "dead_band");
+      CHECK(found[0].severity == Severity::caution);
+      for (double& value : y) value += 10 * kSigma;
+      CHECK(test::digital_faults(y, kDigitalRate, step * kSigma).findings.empty());
+    }
+}
+
 TEST_CASE("digital: two levels, a counter and a lone spike have no rails") {
   std::vector<double> square(kDigitalSamples), counter(kDigitalSamples), spike(kDigitalSamples, 1.0);
   for (std::size_t t = 0; t < kDigitalSamples; ++t) {

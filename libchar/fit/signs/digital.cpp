@@ -8,6 +8,8 @@
 //   q^2/12 + q^2 exp(-2 pi^2 sigma^2/q^2) (4 sigma^2/q^2 + 1/pi^2) cos(2 pi mean/q) + ...,
 // and errors of neighbours share (6/pi^2) exp(-4 pi^2 sigma^2/q^2) of it, .017 at sigma = .3 step. A value that stands
 // between two steps flips between them with half of that noise: what looks like less than half a step may be .25.
+// Truncation towards zero (a conversion to an integer) has a step of twice the width there: of Gaussian noise n_k at k
+// steps, ln n_0 = (4 ln n_1 - ln n_2) / 3, n_k the mean of both sides; twice as many are a dead band of two steps.
 #include "libchar/fit/signs/digital.hpp"
 
 #include <fmt/format.h>
@@ -23,6 +25,7 @@ namespace libchar {
 namespace {
 
 constexpr std::uint64_t kFewestAtRail = 8, kFewestRepeats = 64;
+constexpr double kSame = 1e-6;       ///< of a step
 constexpr double kSheppard = 0.5;    ///< steps: down to there rounding is white noise of a twelfth of its square
 constexpr double kMostAtRail = 0.5;  ///< share: beyond it the rail is the signal, and the rest are spikes
 
@@ -38,6 +41,36 @@ DigitalSums::AtRail rail_of(std::span<const double> record, const ValueCensus& c
   double near = 0;
   for (const double x : record) near += inwards(x) > 0 && inwards(x) <= inside ? 1 : 0;
   return {at, count <= 2 * near + static_cast<double>(kFewestAtRail) ? 0 : count};
+}
+
+DigitalSums::AtZero zero_of(std::span<const double> record, const ValueCensus& census) {
+  DigitalSums::AtZero out;
+  if (!(census.low < 0) || !(census.high > 0) || census.repeats == 0) return out;
+  double least = std::max(-census.low, census.high);
+  for (const double x : record) {
+    const double size = std::abs(x);
+    least = size > 0 && size < least ? size : least;
+  }
+  const auto at = [&](double size, int steps) { return std::abs(size - steps * least) < kSame * least ? 1.0 : 0.0; };
+  for (const double x : record) {
+    const double size = std::abs(x);
+    out.zeros += size == 0 ? 1 : 0;
+    out.nearest += at(size, 1);
+    out.next += at(size, 2);
+  }
+  out.step = least;
+  return out;
+}
+
+/// Zeros over what the steps beside them lead to expect, where that is the doubled one of truncation.
+std::optional<double> truncated(const DigitalSums::AtZero& zero, std::optional<double> step) {
+  constexpr double kFewest = 400, kLeast = 1.6, kMost = 2.5, kFlat = 0.48;
+  if (!step || !(std::abs(zero.step - *step) < kSame * *step) || zero.next < kFewest) return std::nullopt;
+  // A narrower peak, of 1.6 steps of a Gaussian, may be another distribution's.
+  if (zero.next < kFlat * zero.nearest) return std::nullopt;
+  const double expected = std::exp((4 * std::log(zero.nearest / 2) - std::log(zero.next / 2)) / 3);
+  const double times = zero.zeros / expected;
+  return times > kLeast && times < kMost ? std::optional(times) : std::nullopt;
 }
 
 double chance_of_repeat(double noise_over_step) {
@@ -70,6 +103,18 @@ std::optional<DigitalFaults::Rounding> rounding_noise(const ValueCensus& census,
 
 std::string with_unit(double value, std::string_view unit) {
   return number_text(value, 3) + (unit.empty() ? "" : " ") + std::string(unit);
+}
+
+Finding truncation_finding(double times, const DigitalSums::AtZero& zero, std::string_view unit) {
+  Finding found = finding(
+      "dead_band",
+      fmt::format(
+          "0 occurs {:.1f} times as often as the values beside it lead to expect: values were truncated towards "
+          "zero, a dead band of two steps of {}, and the noise comes out too small. Round to the nearest value.",
+          times, with_unit(zero.step, unit)),
+      "values were truncated towards zero");
+  found.severity = Severity::caution;
+  return found;
 }
 
 void describe_faults(DigitalFaults& faults, std::string_view unit) {
@@ -109,6 +154,7 @@ DigitalSums digital_sums(std::span<const double> samples, const ValueCensus& cen
   if (!(census.low < census.high)) return sums;
   sums.low = rail_of(samples, census, false, sums.present);
   sums.high = rail_of(samples, census, true, sums.present);
+  sums.zero = zero_of(samples, census);
   return sums;
 }
 
@@ -121,13 +167,23 @@ void join(DigitalSums& sums, const DigitalSums& later) {
   };
   add_rail(sums.low, later.low, false);
   add_rail(sums.high, later.high, true);
+  // A leaf that does not come near zero has another least distance from it.
+  DigitalSums::AtZero& zero = sums.zero;
+  const DigitalSums::AtZero& other = later.zero;
+  if (other.step > 0 && (zero.step == 0 || other.step < zero.step)) {
+    zero = other;
+  } else if (other.step > 0 && other.step == zero.step) {
+    zero.zeros += other.zeros;
+    zero.nearest += other.nearest;
+    zero.next += other.next;
+  }
   sums.present += later.present;
 }
 
 template <class Archive, class Sums>
 static void digital_layout(Archive& at, Sums& sums) {
   at.group("the digital faults of a channel", sums.present, sums.low.value, sums.low.count, sums.high.value,
-           sums.high.count);
+           sums.high.count, sums.zero.step, sums.zero.zeros, sums.zero.nearest, sums.zero.next);
 }
 
 void write_state(const DigitalSums& sums, StateWriter& to) { digital_layout(to, sums); }
@@ -154,6 +210,8 @@ DigitalFaults find_digital_faults(const DigitalSums& sums, const ValueCensus& ce
       faults.rails.push_back({census.high, true, sums.high.count / sums.present});
   }
   describe_faults(faults, unit);
+  if (const auto times = faults.held ? std::nullopt : truncated(sums.zero, step))
+    faults.findings.push_back(truncation_finding(*times, sums.zero, unit));
   return faults;
 }
 

@@ -61,8 +61,14 @@ struct DigitalSums {
     double value = 0;
     double count = 0;  ///< 0: no rail
   };
+  /// Samples at zero and at the two steps on both sides of it, where values of both signs are.
+  struct AtZero {
+    double step = 0;  ///< least distance from zero; 0: nothing was counted
+    double zeros = 0, nearest = 0, next = 0;
+  };
   double present = 0;
   AtRail low, high;
+  AtZero zero;
 };
 
 /// `census` of the same samples, and how many of them are missing.
