@@ -62,7 +62,7 @@ DigitalSums::AtZero zero_of(std::span<const double> record, const ValueCensus& c
   return out;
 }
 
-/// Zeros over what the steps beside them lead to expect, where that is the doubled one of truncation.
+/// zeros over what the steps next to them lead to expect, where that is the doubled one of truncation.
 std::optional<double> truncated(const DigitalSums::AtZero& zero, std::optional<double> step) {
   constexpr double kFewest = 400, kLeast = 1.6, kMost = 2.5, kFlat = 0.48;
   if (!step || !(std::abs(zero.step - *step) < kSame * *step) || zero.next < kFewest) return std::nullopt;
@@ -109,7 +109,7 @@ Finding truncation_finding(double times, const DigitalSums::AtZero& zero, std::s
   Finding found = finding(
       "dead_band",
       fmt::format(
-          "0 occurs {:.1f} times as often as the values beside it lead to expect: values were truncated towards "
+          "0 occurs {:.1f} times as often as the values next to it lead to expect: values were truncated towards "
           "zero, a dead band of two steps of {}, and the noise comes out too small. Round to the nearest value.",
           times, with_unit(zero.step, unit)),
       "values were truncated towards zero");
