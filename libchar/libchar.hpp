@@ -2,13 +2,13 @@
 // The front door: what the program does with one log or one scene, as functions. docs/library.md
 // walks through it and names the headers of the rest.
 //
-//   inspect        what a log holds                          log/inspection.hpp
-//   characterize   curves, noise model and checks of a log   characterize/characterization.hpp
-//   fit            noise coefficients of samples in memory   here
-//   simulate       samples from sensor models                here
-//   replay         fusion algorithms on a scene              replay/replay.hpp
-//   fleet_lot      many devices side by side              lot/fleet_lot.hpp
-//   export_models  models for the programs that take them    export/exports.hpp
+//   - inspect        what a log holds                          log/inspection.hpp
+//   - characterize   curves, noise model and checks of a log   characterize/characterization.hpp
+//   - fit            noise coefficients of samples in memory   here
+//   - simulate       samples from sensor models                here
+//   - replay         fusion algorithms on a scene              replay/replay.hpp
+//   - fleet_lot      many devices side by side                 lot/fleet_lot.hpp
+//   - export_models  models for the programs that take them    export/exports.hpp
 //
 // Times are in s, frequencies in Hz, samples in the unit of their channel; NaN marks a missing
 // sample. Whatever a user can get wrong is thrown as Error (core/error.hpp).

@@ -85,9 +85,9 @@ AllanCurve limited(const AllanCurve& octaves, const AllanOptions& options);
 
 // How well the points of an Allan curve are known: chi-square intervals by exact degrees of freedom.
 
-/// Fills edf, ci68, ci95 and reliable of every point for the fitted mixture, and takes the bias
-/// that SP 1065 states for it out of the modified and Hadamard total deviations (`bias`: raw
-/// variance over this one), unless it is to stay. MTIE and TIE rms have no interval: edf stays 0.
+/// Fills edf, ci68, ci95 and reliable of every point for the fitted mixture. Also takes out of the modified and
+/// Hadamard total deviations the bias that SP 1065 states for them, unless it is to stay (`bias`: raw variance over
+/// this one). MTIE and TIE rms have no interval: edf stays 0.
 void add_intervals(AllanCurve& curve, const Mixture& theta);
 
 namespace detail {

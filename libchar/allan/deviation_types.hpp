@@ -39,8 +39,8 @@ enum class DeviationFamily {
   interval      ///< detail/time_interval.cpp: of phase, whose offset in frequency counts
 };
 
-/// With the phase x, its running sum W and the averaging factor m, a term of `differences` is the difference of
-/// `order` at step m of x, or of W / m; the deviation is sqrt(mean of squares / divisor) / tau.
+/// With x the phase, W its running sum and m the averaging factor: a term of `differences` is the difference of `order`
+/// at step m of x, or of W / m. The deviation is sqrt(mean of squares / divisor) / tau.
 struct DeviationRow {
   DeviationType type;
   std::string_view word;  ///< on the command line and in JSON: "oadev"

@@ -78,9 +78,9 @@ struct CharacterizeOptions {
   /// the spectrum in at most so many bins, even on a logarithmic axis of frequency; 0: as Welch gives it
   std::uint64_t spectrum_bins = 400;
   FitOptions fit;
-  /// Samples kept at a time at most, but for a leaf of one channel: a log of many channels is read
-  /// several times, and what needs all samples of a longer one (a deviation other than oadev at
-  /// octaves, a temperature) is refused beyond. Changes no result.
+  /// Limit of the samples kept at a time; a leaf of one channel is kept in any case. A log of many channels is read
+  /// several times instead. What needs all samples of a log longer than a leaf (a deviation other than oadev at
+  /// octaves, a temperature) is refused beyond the limit. Changes no result.
   std::uint64_t memory_bytes = std::uint64_t{1} << 30U;
   /// where `allan` asks for octaves, of a record of at most a leaf: ten averaging times per decade as well, for plots
   bool ten_a_decade = false;

@@ -75,8 +75,8 @@ struct ChannelView {
   bool in_detail = true;                             ///< has curves and a part of its own on a page
 };
 
-/// Of more channels than these a page shows those in detail that ask for a look most, and the others in a sentence and
-/// a row of the table.
+/// Most channels that a page shows in detail: those that ask for a look most. The others get a sentence and a row of
+/// the table.
 inline constexpr std::size_t kMostInDetail = 100;
 
 /// Points into the result that it is a view of, which must live as long.

@@ -2,15 +2,15 @@
 // One long log characterized by many machines, and merged exactly (docs/theory/stretches.md).
 //
 // A log is divided in leaves of 2^20 samples (the last may be short); a stretch is a range of whole leaves. Leaves are
-// taken one by one and joined in a tree that depends on their numbers only, so that the result has the same bits
-// however the log was divided in stretches, and in whatever order their states arrive.
+// taken one by one and joined in a tree that depends on their numbers only. So the result has the same bits, however
+// the log was divided in stretches and in whatever order their states arrive.
 //
-//   const LogInfo head = read_log_head(path, options.reading);              // channel_names.hpp; head.rows: samples
-//   if (const auto why = why_not_divided(head, options); !why.empty()) …    // why
+//   const LogInfo head = read_log_head(path, options.reading);  // channel_names.hpp. head.rows: samples.
+//   if (const auto why = why_not_divided(head, options); !why.empty()) …  // Not every log can be divided.
 //   const std::uint64_t leaves = leaves_of(head.rows);
-//   characterize_stretch(path, options, {0, leaves / 2}, sha256_of_the_log, sink);   // on one machine: a file for each
-//   channel
-//   …                                                                               // {leaves / 2, leaves} on another
+//   // On one machine; one file per channel. On another: {leaves / 2, leaves}.
+//   characterize_stretch(path, options, {0, leaves / 2}, sha256_of_the_log, sink);
+//   …
 //   result = characterize_from_stretches({{state_in_file("a.state"), state_in_file("b.state")}}, options);
 
 #include <cstdint>
@@ -73,9 +73,9 @@ StretchHead stretch_head(const NamedState& state);
 std::string settings_digest(const CharacterizeOptions& options);
 
 /// Joins the states of all channels, in any order, to what one machine would have found, one channel at a time. Throws
-/// Error(input) by name for a state that is damaged or no state (E0723), of another log or of other settings (E0724),
-/// for one that covers what another does, and for leaves that none has (E0725); Error(numeric) where no channel has a
-/// finite value. `log.sha256` of the result is empty: the caller knows the log.
+/// Error(input) by name for a state that is damaged or not a state (E0723), and for one of another log or of other
+/// settings (E0724). Throws it as well for leaves that two states have, or no state (E0725). Throws Error(numeric)
+/// where no channel has a finite value. `log.sha256` of the result is empty: the caller knows the log.
 Characterization characterize_from_stretches(std::span<const NamedState> states, const CharacterizeOptions& options,
                                              Progress& progress = no_progress());
 

@@ -34,9 +34,9 @@ struct Unit {
   /// multiply by this to get rad/s, m/s^2, T, Pa, K, V, rad, s, Hz (differences; offsets are ignored)
   double to_si = 1;
 
-  /// What a sample (not a difference) in `from` is multiplied by to be one in `to`. Nothing where they are of two
-  /// quantities, where one is not known, or where no factor does it (K and °C have different zeros, ppm is a share and
-  /// µg/m³ is not); 1 where one of them says nothing.
+  /// What a sample (not a difference) in `from` is multiplied by to be one in `to`; 1 where one of them says nothing.
+  /// Nothing where they are of two quantities, or where one is not known. Nothing also where no factor converts them: K
+  /// and °C have different zeros, ppm is a share and µg/m³ is not.
   static std::optional<double> sample_factor(std::string_view from, std::string_view to);
 };
 

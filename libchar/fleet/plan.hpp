@@ -1,9 +1,9 @@
 #pragma once
 // A fleet's work in units: what is to be computed, what each unit is expected to cost, and where its result will be.
 //
-//   DIR/plan.jsonl     every unit, a line each, behind a line about the fleet
-//   DIR/tasks/N.json  the same units, a file each, for schedulers
-//   DIR/results/      what they give (result_store.hpp)
+//   DIR/plan.jsonl    every unit, one line each, after a line about the fleet.
+//   DIR/tasks/N.json  the same units, one file each, for schedulers.
+//   DIR/results/      what they give (detail/result_store.hpp).
 
 #include <cstdint>
 #include <filesystem>
@@ -47,9 +47,9 @@ struct FleetPlan {
   std::vector<std::pair<std::string, Findings>> warned;
 };
 
-/// Looks into every log, takes its digest where none is stated, and reads the limits. Throws
-/// Error(input) for limits that cannot be read, for logs that cannot be read or have no sampling
-/// rate (all of them named, the first few with the reason), and for one log twice.
+/// Looks into every log, takes its digest where none is stated, and reads the limits. Throws Error(input) for limits
+/// that cannot be read, and for one log twice. Throws it as well for logs that cannot be read or have no sampling rate:
+/// with their number, and the first few by name and reason.
 FleetPlan plan_fleet(const Manifest& manifest, const FleetPlanOptions& options, Progress& progress = no_progress());
 
 /// What a new plan in a folder takes the place of.

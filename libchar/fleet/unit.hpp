@@ -64,7 +64,8 @@ std::string settings_id(const CharacterizeOptions& options);
 std::string settings_id(const FleetUnit& unit);
 
 /// The same of what can make results differ that come from different logs. How a log is read (its names, units, rate,
-/// which rows) and which of its channels is the thermometer says what is in it, not how it is characterized.
+/// which rows) and which of its channels is the thermometer are not part of it. They describe what is in the log, not
+/// how it is characterized.
 std::string analysis_id(const FleetUnit& unit);
 
 /// As JSON in one line ("format": "fleet-task"), and back. Throws Error(input).

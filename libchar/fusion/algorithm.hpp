@@ -7,31 +7,30 @@
 //     Estimate step(const Sample& y);
 //   };
 //
-// It may also have
+// The engine knows it by one line in registry.cpp. It may also have:
 //   static constexpr std::array options{Option{…}…};
-//       and the constructor A(const Array&, const Settings&)
+//       And the constructor A(const Array&, const Settings&).
 //   void learn(const Sample& y, const Sample& truth);
-//       one instant of the learning window (description.needs says so)
+//       One instant of the learning window (description.needs says so).
 //   void skip(const Sample& y);
-//       instead of it where the truth is missing (or a sample, unless the description accepts that): for
-//       those that count instants or follow time
+//       Instead of `learn` where the truth is missing (or a sample, unless the description accepts that). For
+//       those that count instants or follow time.
 //   void finish_learning();
-//       after the last one; throws Error(numeric) when nothing can be learnt
-//   Eigen::MatrixXd weights() const;      n x r, at present
-//   Eigen::VectorXd variances() const;    of a sample's noise, channel by channel, as estimated now
+//       After the last one. Throws Error(numeric) when nothing can be learnt.
+//   Eigen::MatrixXd weights() const;      n x r, at present.
+//   Eigen::VectorXd variances() const;    Of a sample's noise, channel by channel, as estimated now.
 //   const FaultLog& faults() const;
-//   const HandOverLog& hand_overs() const;   of one that has several estimators
-//   void remarks(Findings&) const;        what the reader of the result must know
+//   const HandOverLog& hand_overs() const;   Of one that has several estimators.
+//   void remarks(Findings&) const;        What the reader of the result must know.
 //   static bool looks_ahead(const Settings&);   and   void look(const Sample& y);
-//       true: it is shown all instants of the run before the first step, then finish_learning, then the
-//       steps of the same instants
+//       True: it is shown all instants of the run before the first step. Then come finish_learning and the
+//       steps of the same instants.
 //   static double cost_ns(const Array&, const Settings&);
-//       of a step, nanoseconds of a core of 3 GHz, by one figure of precision: what scores would
-//       cost is counted with it, never measured. Without it 10 a channel and input.
+//       Of a step, nanoseconds of a core of 3 GHz, to one significant digit. What scores would cost is
+//       counted with it, never measured. Without it: 10 per channel and input.
 //   void exchange(LearntExchange&);
-//       hands out what finish_learning made, or takes it in instead of learning (learnt.hpp): what
-//       learns and lacks it cannot be applied to another log
-// and is known to the engine by one line in registry.cpp.
+//       Hands out what finish_learning made, or takes it in instead of learning (learnt.hpp). An algorithm
+//       that learns and lacks it cannot be applied to another log.
 
 #include <Eigen/Core>
 #include <cmath>

@@ -26,7 +26,7 @@ struct ChannelBudget {
 
 struct ErrorBudget {
   std::vector<ChannelBudget> channels;
-  std::vector<double> savings;  ///< a part: were it gone from every channel
+  std::vector<double> savings;  ///< One per part: if it were gone from every channel.
   /// RMS of the mean's error (with a truth), or of the mean of the others against each channel (blind),
   /// on the same instants: as recorded, and aligned.
   double before = 0, after = 0;

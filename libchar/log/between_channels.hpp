@@ -11,8 +11,8 @@
 
 namespace libchar {
 
-/// Adds a finding to each axis of a triad of accelerometers that rests and does not read gravity within 15 %, and to
-/// every channel that repeats an earlier one sample by sample, as it is or with its sign turned. `quality`: of each.
+/// Adds a finding to each axis of a triad of accelerometers that rests and does not read gravity within 15 %. Adds one
+/// to every channel that repeats an earlier one sample by sample, as it is or with its sign turned. `quality`: of each.
 void judge_together(std::span<const Channel> channels, const std::function<ChannelQuality&(std::size_t)>& quality);
 
 }  // namespace libchar

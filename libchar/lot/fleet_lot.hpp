@@ -109,9 +109,9 @@ struct BatchDifference {
   double p = 1;       ///< of as large differences of batches that are alike
 };
 
-/// Recordings of a device that lie as far apart, in °C, are at several temperatures: a line through their biases has a
-/// slope, and does not mean what a temperature that is stated to a degree is off by (1 °C of 10 make the slope too
-/// small by 2 %).
+/// Recordings of a device that lie this far apart, in °C, are at several temperatures: a line through their biases has
+/// a slope. The slope does not merely show the error of a temperature that is stated to a degree: 1 °C of 10 makes it
+/// too small by 2 %.
 inline constexpr double kLeastTemperatureSpan = 10;
 
 /// From recording to recording of one device: for a turn-on bias, its repeatability; what temperature does to it is

@@ -54,9 +54,9 @@ NoiseLimits parse_limits(std::string_view text, const std::string& file);
 /// The same from a file: at most 16 MiB, a regular file.
 NoiseLimits read_limits_file(const std::string& path);
 
-/// The limits that hold for these channels, by channel and term. Throws Error(input) with its place
-/// for a name or a kind that none of the channels has, a unit that does not fit a channel's, and a
-/// term of a channel that is limited twice.
+/// The limits that hold for these channels, by channel and term. Throws Error(input) with its place for a name or a
+/// kind that none of the channels has, and for a unit that does not fit a channel's. Throws it as well for a term that
+/// is limited twice for one channel.
 std::vector<ChannelLimit> limits_for(const NoiseLimits& limits, const std::vector<NamedChannel>& channels);
 
 }  // namespace libchar

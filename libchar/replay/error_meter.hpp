@@ -67,8 +67,8 @@ ErrorScore score(const ErrorMeter& meter, double rate_hz, const ScoreOptions& op
 /// Errors that are judged together: one, or one for each sensor.
 using Meters = std::vector<const ErrorMeter*>;
 
-/// Geometric mean of the root mean squares, so that none counts for more because it is larger (the
-/// Gaussian predictive likelihood of all, each with a variance of its own), and its 95 % interval.
+/// Geometric mean of the root mean squares, and its 95 % interval. In this mean no error counts for more because it is
+/// larger: it is the Gaussian predictive likelihood of all, each with a variance of its own.
 struct GeometricRms {
   double rms = 0;
   Interval ci95;

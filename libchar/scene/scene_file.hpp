@@ -56,10 +56,10 @@ struct SceneFolder {
   bool may_be_absent = false;  ///< a file that is not there yet is only checked for where it would be
 };
 
-/// The path of a file named in a scene under `key` ("reference.recording"). Throws Error(input) at
-/// `where` ("FILE:LINE:COL") for a path that leaves the scene's folder (by "..", absolute, or over
-/// a link), names the scene itself or its folder, or is neither an existing regular file nor a folder that is allowed.
-/// Nothing is opened.
+/// The path of a file named in a scene under `key` ("reference.recording"). Throws Error(input) at `where`
+/// ("FILE:LINE:COL") for a path that leaves the scene's folder (by "..", absolute, or over a link). Throws it as well
+/// for one that names the scene itself or its folder, or is neither an existing regular file nor a folder that is
+/// allowed. Nothing is opened.
 std::string resolve_scene_file(const std::string& named, const SceneFolder& folder, const std::string& where,
                                const std::string& key, SceneFolder::Kind folders = SceneFolder::Kind::none);
 

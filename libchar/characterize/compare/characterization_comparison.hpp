@@ -139,10 +139,10 @@ CharacterizationComparison compare_characterizations(std::vector<ReportedCharact
 /// Metrics: the keys of the terms; labels are of channels. Throws Error(usage).
 GrowthCheck parse_characterization_check(std::string_view text);
 
-/// One sentence for each term that fails: in a later side it is larger than in the first by more than allowed by
-/// the whole 95 % interval of their ratio (or above the limit of the first by its whole interval), or the first
-/// knows it and the other does not. Throws Error(usage) when `label` is in no side, and Error(check) when the
-/// first has no such term: a check that cannot fail.
+/// One sentence for each term that fails. A later side fails where the first knows the term and it does not. It also
+/// fails where the whole 95 % interval of its ratio to the first is above what is allowed. If the first has only a
+/// limit, the whole interval of the later side must be above what is allowed of that limit. Throws Error(usage) when
+/// `label` is in no side, and Error(check) when the first has no such term: a check that cannot fail.
 std::vector<std::string> failures(const CharacterizationComparison& comparison, const GrowthCheck& check);
 
 }  // namespace libchar

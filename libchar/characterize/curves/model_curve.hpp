@@ -18,9 +18,10 @@ namespace libchar {
 /// the (overlapping) Allan deviation, whose curves are the only ones we have in exact form.
 std::optional<double> model_deviation(const NoiseFit& fit, DeviationType type, double m, double dt_s);
 
-/// Where the deviation of another stretch of the record, or of another recording of the sensor, is expected to lie (95
-/// %, without the scatter of a measured curve): from the intervals and limits of all terms, also unseen ones, and from
-/// what differs between stretches of the record (fit/stationarity.hpp). Nothing where `model_deviation` gives nothing.
+/// Where the deviation of another stretch of the record, or of another recording of the sensor, is expected (95 %,
+/// without the scatter of a measured curve). Follows from the intervals and limits of all terms, also unseen ones, and
+/// from the differences between stretches of the record (fit/signs/stationarity.hpp). Nothing where `model_deviation`
+/// gives nothing.
 std::optional<Interval> model_interval(const NoiseFit& fit, DeviationType type, double m, double dt_s);
 
 /// The fit's spectrum in the sides and scaling of `spectrum` at its bin i; nothing at f <= 0 or for a vanishing model.

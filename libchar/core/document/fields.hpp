@@ -1,6 +1,7 @@
 #pragma once
-// One description per document: rows {key, member, unit, range, words, comment}, from which come its reader (with line,
-// column and the nearest key), its YAML, its JSON, the settings that a report records and the table of keys in docs/.
+// One description per document: rows {key, member, unit, range, words, comment}. Its reader (with line, column and the
+// nearest key), its YAML and its JSON come from them. So do the settings that a report records and the table of keys in
+// docs/.
 //
 //   const Fields<Sidecar> kRows = {
 //       field<&Sidecar::rate_hz>("rate_hz", {.unit = "Hz", .range = kPositive, .comment = "sampling rate"}),

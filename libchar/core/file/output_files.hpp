@@ -25,12 +25,12 @@ void check_outputs(const std::vector<std::string>& paths, const std::filesystem:
 void foresee_outputs(const std::vector<std::string>& paths, const std::filesystem::path& folder,
                      const std::vector<std::string>& inputs, bool force);
 
-/// Makes the folder and writes all files before the first gets its name: a full disk leaves none of them. What is to be
-/// done is written down first (a journal in the folder), so that the next run finishes what a killed one began, and the
-/// folder is locked meanwhile: sets of two runs never mix. With `force`, what a document that is replaced (.json) names
-/// as its files ("files") and the new one does not is removed. Throws Error(output) when one exists and `force` is
-/// false, is one of `inputs`, or another run keeps writing there. `streamed` are files of the set that were written
-/// piece by piece, in the same folder. Returns the names that were removed.
+/// Makes the folder and writes all files before the first gets its name: a full disk leaves none of them. A journal in
+/// the folder states first what is to be done, so that the next run finishes what a killed one began. The folder is
+/// locked meanwhile: sets of two runs never mix. With `force`, removes the files that a replaced document (.json) lists
+/// ("files") and the new one does not. Throws Error(output) when one exists and `force` is false, when one is of
+/// `inputs`, or when another run keeps writing there. `streamed` are files of the set that were written piece by piece,
+/// in the same folder. Returns the names that were removed.
 std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs, const std::filesystem::path& folder,
                                        const std::vector<std::string>& inputs, bool force,
                                        const std::vector<WholeFile*>& streamed = {});
@@ -39,9 +39,9 @@ std::vector<std::string> write_outputs(const std::vector<OutputFile>& outputs, c
 /// than the first file's follow as a set of their own. Throws Error(output).
 void commit_together(const std::vector<WholeFile*>& files);
 
-/// An input is never overwritten: throws Error(output) where the output is the input or a part of it: a file of
-/// a rosbag2 recording, the sidecar of an array, of a folder of
-/// results what its documents name, of a fleet its plan, tasks and results.
+/// Throws Error(output) where the output is the input or a part of it: an input is never overwritten. Parts are the
+/// files of a rosbag2 recording and the sidecar of an array. Of a folder of results they are the files that its
+/// documents name; of a fleet its plan, tasks and results.
 void refuse_same_file(const std::string& input, const std::string& output);
 
 /// A file that was written piece by piece, and what went into it.

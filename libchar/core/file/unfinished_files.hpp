@@ -1,6 +1,6 @@
 #pragma once
-// What a program has on disk under temporary names, so that a signal's handler can take it away and end the program at
-// once, wherever it is: in a library's loop that never asks, or in a reading that does not return.
+// What a program has on disk under temporary names. The list lets a signal's handler take it away and end the program
+// at once, wherever it is: in a library's loop that never asks, or in a reading that does not return.
 
 #include <filesystem>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
-// A record of any length as leaves of 2^20 samples, joined in a binary tree by their numbers, like a binary counter:
-// node (height, place) is of the leaves place * 2^height up to the next place, and two become one only when they are
+// A record of any length as leaves of 2^20 samples, joined in a binary tree by their numbers, like a binary counter.
+// Node (height, place) is of the leaves place * 2^height up to the next place. Two nodes become one only when they are
 // the halves of such a node. So the operands and the order of every sum are those of the record, whoever computes it:
 // one thread or many, one machine or a hundred.
 

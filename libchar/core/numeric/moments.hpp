@@ -6,10 +6,10 @@
 
 namespace libchar {
 
-/// Central moments merged block by block: within a block of 4096 samples, sums about the block's mean; between blocks
-///   M2 = M2a + M2b + d^2 na nb / n,   d = mean_b - mean_a      (Chan, Golub & LeVeque 1979; Pébay 2008 for M3, M4)
-/// so that an offset of 10⁹ standard deviations costs nothing. Results depend on the sequence only, not on how it is
-/// pushed. Samples whose fourth powers a double does not hold are taken in a unit 2^exponent larger.
+/// Central moments merged block by block. Within a block of 4096 samples: sums about the block's mean. Between blocks:
+///   M2 = M2a + M2b + d^2 na nb / n,   d = mean_b - mean_a      (Chan, Golub & LeVeque 1979; Pébay 2008 for M3, M4).
+/// So an offset of 10⁹ standard deviations costs nothing. Results depend on the sequence only, not on how it is pushed.
+/// Samples whose fourth powers a double does not hold are taken in a unit 2^exponent larger.
 class Moments {
  public:
   void push(std::span<const double> samples);

@@ -32,10 +32,10 @@ struct Outlier {
 
 inline constexpr std::size_t kFewestForOutliers = 4;
 
-/// Values that the others do not let expect: each against the mean and spread of the others (deleted residual,
-/// Student's t), the worst taken out first, then the worst of the rest, up to a third of them; those up to the last
-/// with p < `probability`. A p that was hidden by another outlier is given as `probability`. Nobody, of fewer than
-/// kFewestForOutliers values.
+/// Values that the others make improbable. Each is compared with the mean and spread of the others (deleted residual,
+/// Student's t). The worst is taken out first, then the worst of the rest, up to a third of them. The result ends with
+/// the last that has p < `probability`. A p that was hidden by another outlier is given as `probability`. Empty for
+/// fewer than kFewestForOutliers values.
 std::vector<Outlier> find_outliers(std::span<const double> value, std::span<const double> variance,
                                    double probability = 0.01);
 

@@ -1,12 +1,12 @@
 #pragma once
-// Blocks of one stream of samples that two stages want transformed, and one of them transforms: Welch's spectrum goes
-// by halves of its segments, the fit wants the squared cosine transforms of just such blocks, and those cost next to
-// nothing in parallel with a Fourier transform of the same samples. The two do not know each other:
+// Blocks of one stream of samples that two stages want transformed, and one of them transforms. Welch's spectrum goes
+// by halves of its segments. The fit wants the squared cosine transforms of just such blocks; they cost next to nothing
+// in parallel with a Fourier transform of the same samples. The two do not know each other:
 //
-//   SharedBlocks blocks(length, taker);             // taker: the stage that only wants the squares
-//   if (blocks.offer(samples, whole)) …             // the stage that transforms, block after block: true asks for the
-//                                                   // squares, which it adds up
-//   blocks.close(rest, power);                      // at the end: samples after the last block, the sums
+//   SharedBlocks blocks(length, taker);             // Taker: the stage that only wants the squares.
+//   if (blocks.offer(samples, whole)) …             // The stage that transforms, block after block. True asks for the
+//                                                   // squares, which it adds up.
+//   blocks.close(rest, power);                      // At the end: samples after the last block, the sums.
 
 #include <cstdint>
 #include <span>

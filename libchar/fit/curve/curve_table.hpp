@@ -29,13 +29,17 @@ struct CurveTable {
   std::string sha256;
 };
 
-/// Curves of a table with a header that names them: averaging time (tau, tau_s, x) or frequency (frequency_hz,
-/// frequency, f, x), values (deviation, adev, oadev, sigma, value; avar, variance; psd), and if present: channel, unit,
-/// curve, and what says how well a value is known, in this order: edf or dof; low68 and high68; rel_err or
-/// relative_error (a fraction, or percent when its header says %; one standard deviation of the value); error, sd or
-/// uncertainty (in the unit of the value). One curve for each name in the channel column, in the order of their first
-/// rows. Or the spectra that psd prints: frequency_hz and a column NAME[UNIT] for each channel. Nothing when the header
-/// does not name an abscissa and a value: such a file is a plain table of numbers.
+/// Curves of a table with a header that names them:
+/// - Averaging time (tau, tau_s, x) or frequency (frequency_hz, frequency, f, x).
+/// - Values (deviation, adev, oadev, sigma, value; avar, variance; psd).
+/// - If present: channel, unit, curve.
+/// - If present, how well a value is known, in this order: edf or dof; low68 and high68; rel_err or relative_error;
+///   error, sd or uncertainty.
+///
+/// A relative error is one standard deviation of the value: a fraction, or percent when its header says %. An error, sd
+/// or uncertainty is in the unit of the value. One curve for each name in the channel column, in the order of their
+/// first rows. Or the spectra that psd prints: frequency_hz and a column NAME[UNIT] for each channel. Nothing when the
+/// header does not name an abscissa and a value: such a file is a plain table of numbers.
 /// Throws Error(input) with FILE:LINE:COL for a row that does not fit.
 std::optional<CurveTable> read_curve_table(const std::string& path, bool is_allan);
 

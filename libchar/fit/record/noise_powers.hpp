@@ -10,8 +10,9 @@ namespace libchar {
 /// Of a series, by the noise that is fitted to it.
 using NoisePowers = std::function<EventSeries::Noise(const EventSeries& series)>;
 
-/// The mixture of white noise, flicker, walk and quantization (white phase noise of a clock) that fits a series from
-/// its slowest coefficients up, as far as it describes them: what `find_events` uses where the caller has no better.
+/// The mixture of white noise, flicker, walk and quantization (white phase noise of a clock) that fits a series. It is
+/// fitted from the slowest coefficients up, as far as it describes them. `find_events` uses it where the caller has no
+/// better one.
 NoisePowers fitted_powers();
 
 }  // namespace libchar

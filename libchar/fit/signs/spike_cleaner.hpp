@@ -38,8 +38,9 @@ class SpikeScan {
 
 namespace libchar::detail {
 
-/// Sums of squared first differences: of all but steps, and what they would be if the whole distribution were Gaussian
-/// like its core, the scale taken from the differences within `kNear` and within `kFar` standard deviations of it.
+/// Sums of squared first differences. `all`: of all but steps. `near` and `far`: what they would be if the whole
+/// distribution were Gaussian like its core. The core's scale is taken from the differences within `kNear` and within
+/// `kFar` standard deviations of it.
 struct CoreSums {
   static constexpr double kNear = 1.2, kFar = 2.2;
   double count = 0, all = 0, near = 0, far = 0;

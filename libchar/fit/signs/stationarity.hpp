@@ -40,9 +40,9 @@ struct Stationarity {
   std::string sentence;              ///< "" where steady
 };
 
-/// Compares sixteen stretches of a record (spikes, steps and drift taken out) at every octave that
-/// fits a stretch sixteen times, and four at longer ones that fit a stretch eight times. `fit`:
-/// what the degrees of freedom of long averaging times are computed with.
+/// Compares sixteen stretches of a record (spikes, steps and drift taken out) at every octave that fits a stretch
+/// sixteen times. Compares four at longer octaves, which fit a stretch eight times. `fit`: what the degrees of freedom
+/// of long averaging times are computed with.
 Stationarity test_stationarity(std::span<const double> record, double rate_hz, const NoiseFit& fit);
 /// The same of sums over its leaves. `events`: that were taken out of it before `fit`.
 Stationarity test_stationarity(const FittedSums& sums, std::span<const Event> events, double rate_hz,
