@@ -436,6 +436,36 @@ TEST_CASE("white noise behind shapes that have no name here, or another: its int
   }
 }
 
+TEST_CASE("white noise behind an echo of up to 32 samples is the level at its slow end") {
+  struct Row {
+    std::size_t samples;
+    int lag;
+    double echo;
+    int least;    ///< of 24 intervals that hold N
+    double most;  ///< root mean square of N off
+  };
+  const std::vector<Row> rows = {{20000, 5, 0.2, 21, 0.03},  {20000, 13, 0.1, 21, 0.03}, {20000, 20, -0.2, 21, 0.03},
+                                 {20000, 31, 0.3, 21, 0.03}, {2000, 10, 0.2, 20, 0.1},   {2000, 20, 0.3, 20, 0.1}};
+  for (const Row& row : rows) {
+    CAPTURE(row.samples, row.lag, row.echo);
+    test::Gaussian normal(33);
+    int held = 0;
+    double square = 0;
+    for (int r = 0; r < 24; ++r) {
+      const std::size_t lag = static_cast<std::size_t>(row.lag);
+      std::vector<double> white(row.samples + lag), y(row.samples);
+      for (double& value : white) value = normal();
+      for (std::size_t i = 0; i < y.size(); ++i) y[i] = (white[i + lag] + row.echo * white[i]) / (1 + row.echo);
+      const NoiseFit fit = fit_record(y, kRate, nullptr, {});
+      const Interval n = fit[Term::white].ci95;
+      held += n.low <= 0.1 && n.high >= 0.1 ? 1 : 0;
+      square += std::pow(fit[Term::white].value.value_or(0) / 0.1 - 1, 2) / 24;
+    }
+    CHECK(held >= row.least);
+    CHECK(std::sqrt(square) < row.most);
+  }
+}
+
 TEST_CASE("the limit of a walk knows of a high-pass that is likelier than none") {
   // At .01 Hz in 2,000 s, before white noise and flicker: half of the records are called high-passed, or doubtful.
   constexpr double kWalk = 0.0015, kPole = 0.99937188;
@@ -511,6 +541,21 @@ TEST_CASE("the zeros that the bilinear transform puts at half the rate are a par
     whole += fit.band.top_hz > 0.49 * kRate ? 1 : 0;
   }
   CHECK(whole >= 8);
+}
+
+TEST_CASE("an echo: its gain at zero is one, and its slope is that of its gain") {
+  const NamedShape shape = echo_shape(0.3, 7, kRate);
+  PowerBin bin;
+  bin.low_hz = 9.9, bin.high_hz = 10.1, bin.frequency_hz = 10;
+  const double cosine = std::cos(2 * std::numbers::pi * 10 * 7 / kRate);
+  CHECK(named_log_gain(shape, bin, kRate) == Approx(std::log((1.09 + 0.6 * cosine) / 1.69)).epsilon(1e-3));
+  bin.low_hz = 0, bin.high_hz = 1e-9;
+  CHECK(named_log_gain(shape, bin, kRate) == Approx(0).margin(1e-12));
+  bin.low_hz = 3, bin.high_hz = 17;
+  const double step = 1e-6;
+  const auto at = [&](double artanh) { return named_log_gain(echo_shape(std::tanh(artanh), 7, kRate), bin, kRate); };
+  const double artanh = std::atanh(0.3);
+  CHECK(named_log_slopes(shape, bin, kRate)[0] == Approx((at(artanh + step) - at(artanh - step)) / (2 * step)));
 }
 
 TEST_CASE("a named shape says its family and corners") {

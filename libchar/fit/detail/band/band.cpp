@@ -677,10 +677,11 @@ namespace {
 
 /// The largest deviate of score tests for a shelf, ln gain = a x / (1 + x), x = (f / f_c)², its corner at one of the
 /// octaves of the record: what rises from the slow end on is behind a high-pass. And that of tests for an echo of k
-/// samples, ln gain = a (cos(2 pi k f / rate) - 1).
+/// samples, ln gain = a (cos(2 pi k f / rate) - 1), of which those of a few samples answer to any filter.
 struct ShelfTest {
-  double largest = 0, rising = 0, echo = 0;
+  double largest = 0, rising = 0, near_echo = 0, echo = 0;
   NamedShape clearest;  ///< the shelf of the largest
+  NamedShape echoing;   ///< of two samples or more
 };
 /// The columns and that of the corner of a low-pass, which is fitted too.
 Eigen::MatrixXd with_corner(const Search& search, const Trial& trial, const Eigen::ArrayXd& root,
@@ -695,8 +696,8 @@ Eigen::MatrixXd with_corner(const Search& search, const Trial& trial, const Eige
   return columns;
 }
 ShelfTest shelf_test(const Search& search, const Trial& trial, double slowest_hz) {
-  constexpr double kTopOctave = 0.25, kSeen = 1e-3, kLargest = 2;  ///< of ln gain
-  constexpr int kLongestEcho = 8;
+  constexpr double kTopOctave = 0.25, kSeen = 1e-3, kLargest = 2, kMostEcho = 0.5;  ///< of ln gain, of g
+  constexpr int kNear = 8, kLongestEcho = 32;
   const BinProblem problem = band_problem(search.bins, trial.band, search.rate_hz);
   const Eigen::ArrayXd root = (problem.dof / 2).sqrt(), model = mixture_of(problem, trial.theta);
   std::vector<Eigen::Index> in;
@@ -718,9 +719,17 @@ ShelfTest shelf_test(const Search& search, const Trial& trial, double slowest_hz
     const double deviate = apart.norm() > kSeen * shape.norm() ? apart.dot(residual) / apart.norm() : 0;
     return std::pair{deviate, 1 / apart.norm()};
   };
-  const Eigen::ArrayXd angle = 2 * std::numbers::pi / search.rate_hz * square.sqrt();
-  for (int lag = 1; lag <= kLongestEcho; ++lag)
-    out.echo = std::max(out.echo, std::abs(tested((lag * angle).cos() - 1).first));
+  Eigen::ArrayXd wave(problem.size());
+  for (int lag = 1; lag <= kLongestEcho; ++lag) {
+    for (Eigen::Index j = 0; j < problem.size(); ++j)
+      wave[j] = mean_cosine(search.bins[trial.index[static_cast<std::size_t>(j)]], lag, search.rate_hz) - 1;
+    const auto [deviate, sd] = tested(wave);
+    if (lag <= kNear) out.near_echo = std::max(out.near_echo, std::abs(deviate));
+    if (lag < 2 || !(std::abs(deviate) > out.echo)) continue;
+    out.echo = std::abs(deviate);
+    // ln |H|² ~ 2 g (cos - 1)
+    out.echoing = echo_shape(std::clamp(deviate * sd / 2, -kMostEcho, kMostEcho), lag, search.rate_hz);
+  }
   for (double corner = kTopOctave * search.rate_hz / 2; corner > 4 * slowest_hz; corner /= 2) {
     const auto [deviate, sd] = tested(square / (square + corner * corner));
     out.rising = std::max(out.rising, deviate);
@@ -767,11 +776,36 @@ double chance_of(const Trial& trial) { return std::min(trial.band.goodness.p, tr
 Band low_pass_or(const Search& search, Trial trial, const Band& whole, double slowest_hz) {
   constexpr double kWorth = 4;  ///< of ln L
   const ShelfTest beside = shelf_test(search, trial, slowest_hz);
-  if (!(std::max(beside.largest, beside.echo) > search.options.step)) return trial.band;
+  if (!(std::max(beside.largest, beside.near_echo) > search.options.step)) return trial.band;
   trial.band.hidden.push_back(beside.clearest);
   const std::optional<Band> named = search.named(whole);
   const std::optional<Trial> other = named && named->top_hz > 0.99 * whole.top_hz ? search.at(*named) : std::nullopt;
   return other && other->half_deviance < trial.half_deviance - kWorth ? *named : trial.band;
+}
+
+/// The whole band behind an echo, where that describes it and neither a pole nor a polynomial of two orders does better.
+std::optional<Band> echo_in(const Search& search, Band band, const Trial& plain, const NamedShape& start) {
+  constexpr double kMost = 0.9, kWorth = 1;  ///< of g; of ln L
+  TermSet offered = search.terms;
+  offered[kLentTerm] = offered[kLentTerm] || band.tau_s;
+  const std::vector<PowerBin> inside = bins_of(search.bins, band, search.rate_hz);
+  const auto shape = fit_named_shape(inside, search.rate_hz, offered, NamedShape::Family::echo, start);
+  if (!shape || std::abs(shape->echo) > kMost) return std::nullopt;
+  Band other = band;
+  band.named = *shape;
+  band.orders = static_cast<int>(unknowns_of(shape->family));
+  const std::optional<Trial> trial = search.at(band);
+  if (!trial || !trial->band.passes || !search.needed(*trial) || !shows_white_below(search.bins, *shape, trial->theta))
+    return std::nullopt;
+  const auto as_good = [&](const std::optional<Trial>& rival) {
+    return rival && rival->half_deviance < trial->half_deviance + kWorth;
+  };
+  other.orders = 2;
+  if (as_good(search.at(other, &plain))) return std::nullopt;
+  other.orders = 0;
+  other.low_pass = fit_low_pass(inside, search.rate_hz, offered);
+  if (other.low_pass && as_good(search.at(other))) return std::nullopt;
+  return trial->band;
 }
 
 Band passing(const Trial& trial) {
@@ -903,8 +937,11 @@ Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermS
     if (const std::optional<Band> falling = high_passed(search, *unshaped, slowest_hz)) return *falling;
   const bool describes = chance_of(*unshaped) >= options.probability_unshaped;
   const bool peaked = options.corners && highest_peak(bins, *unshaped).deviations > options.peak;
-  const bool echoes = shelf.echo > options.shelf;
+  const bool echoes = shelf.near_echo > options.shelf;
+  if (shelf.echo > options.echo)
+    if (const auto echo = echo_in(search, whole, *unshaped, shelf.echoing)) return *echo;
   if (shelf.largest > options.step) unshaped->band.hidden.push_back(shelf.clearest);
+  if (shelf.echo > options.hint_of_echo) unshaped->band.hidden.push_back(shelf.echoing);
   if (describes && !(shelf.largest > options.shelf) && !echoes && !peaked) return passing(*unshaped);
   Band with_quantization = whole;
   with_quantization.quantized = true;

@@ -38,7 +38,7 @@ struct Band {
   std::optional<double> faster_s;  ///< the same of a second, faster one, in the column of quantization noise
   std::optional<SlowLaw> law;      ///< what the terms stand in for
   SmallShape small;                ///< of the top, too small for the tests; where nothing else shapes it freely
-  std::vector<NamedShape> hidden;  ///< a shelf or high-pass that is likelier than nothing, too little to be taken
+  std::vector<NamedShape> hidden;  ///< a shelf, echo or high-pass that is likelier than nothing, too little to be taken
   bool doubtful_end = false;       ///< a high-pass explains what the terms do not, and so may a process
   bool passes = true;              ///< the residuals are those of noise, or too few to judge
   Goodness goodness;               ///< of the band, its slowest coefficients left out
@@ -56,6 +56,8 @@ struct BandOptions {
   bool corners = false;         ///< shelves and high-passes are looked for: not of a clock, whose noise rises
   double high_pass = 1.5;       ///< deviate from which on a high-pass is looked for
   double shelf = 3.9;           ///< deviate of a directed test from which on a shelf is looked for
+  double echo = 4.5;            ///< the same of 31 tests for an echo
+  double hint_of_echo = 3.3;    ///< the same from which on an interval has to know of it
   double step = 2.1;            ///< the same from which on an interval has to know of one, of ten that are tested
   double peak = 5.5;            ///< standard deviations of a broad peak from which on it is a resonance
   double seen = 3;              ///< standard deviations of such a shape from which on a filter with a name is tried

@@ -39,16 +39,20 @@ double corner_of_square(double square, double rate_hz) {
 
 struct Unknowns {
   NamedShape::Family family = NamedShape::Family::none;
-  std::array<double, 4> x{};  ///< ln s_p, ln zeta, ln s_z or ln s_r, tilt
+  std::array<double, 4> x{};  ///< ln s_p, ln zeta, ln s_z or ln s_r, tilt; artanh g of an echo
+  int lag = 0;
 };
 
 Unknowns unknowns(const NamedShape& shape, double rate_hz) {
+  if (shape.family == NamedShape::Family::echo) return {shape.family, {std::atanh(shape.echo)}, shape.lag};
   const double third_hz = std::max(shape.zero_hz, shape.real_pole_hz);
   return {shape.family,
           {std::log(square_of_corner(shape.pole_hz, rate_hz)), std::log(shape.damping),
-           third_hz > 0 ? std::log(square_of_corner(third_hz, rate_hz)) : 0, shape.tilt}};
+           third_hz > 0 ? std::log(square_of_corner(third_hz, rate_hz)) : 0, shape.tilt},
+          0};
 }
 NamedShape shape_of(const Unknowns& u, double rate_hz) {
+  if (u.family == NamedShape::Family::echo) return echo_shape(std::tanh(u.x[0]), u.lag, rate_hz);
   NamedShape shape;
   shape.family = u.family;
   shape.pole_hz = corner_of_square(std::exp(u.x[0]), rate_hz);
@@ -66,14 +70,16 @@ struct LogGain {
   std::array<double, 4> slope{};
 };
 
-/// Where in a bin the gain is taken: s and ln(1 - s).
+/// Where in a bin the gain is taken: s and ln(1 - s), or the mean cosine of an echo.
 struct Nodes {
   static constexpr std::size_t kCount = 3;
   std::array<double, kCount> s{}, nyquist{};
+  double cosine = 0;
 };
 
-Nodes nodes_of(const PowerBin& bin, double rate_hz) {
+Nodes nodes_of(const PowerBin& bin, double rate_hz, int lag) {
   Nodes out;
+  if (lag > 0) out.cosine = mean_cosine(bin, lag, rate_hz);
   for (std::size_t i = 0; i < Nodes::kCount; ++i) {
     const double share = (static_cast<double>(i) + 0.5) / Nodes::kCount;
     out.s[i] = square_at(bin.low_hz + (bin.high_hz - bin.low_hz) * share, rate_hz);
@@ -90,11 +96,13 @@ class Gain {
         pole_(std::exp(u.x[0])),
         damped_(4 * std::exp(2 * u.x[1])),
         zero_(std::exp(u.x[2])),
-        tilt_(u.x[3]) {}
+        tilt_(u.x[3]),
+        echo_(std::tanh(u.x[0])) {}
 
   /// Of the mean gain over the bin.
   LogGain operator()(const Nodes& nodes) const {
     LogGain out;
+    if (family_ == NamedShape::Family::echo) return of_echo(nodes.cosine);
     double sum = 0;
     for (std::size_t i = 0; i < Nodes::kCount; ++i) {
       LogGain node;
@@ -108,6 +116,11 @@ class Gain {
   }
 
  private:
+  LogGain of_echo(double cosine) const {
+    const double above = 1 + echo_ * (echo_ + 2 * cosine);
+    const double slope = 2 * (echo_ + cosine) / above - 2 / (1 + echo_);
+    return {std::log(above) - 2 * std::log1p(echo_), {slope * (1 - echo_ * echo_)}};
+  }
   double at(double s, double nyquist, LogGain& out) const {
     const double x = s / pole_;
     double below = 1 + x;
@@ -135,24 +148,26 @@ class Gain {
   }
 
   NamedShape::Family family_;
-  double pole_, damped_, zero_, tilt_;
+  double pole_, damped_, zero_, tilt_, echo_;
 };
 
-LogGain log_gain_of(const Unknowns& u, const PowerBin& bin, double rate_hz) { return Gain(u)(nodes_of(bin, rate_hz)); }
+LogGain log_gain_of(const Unknowns& u, const PowerBin& bin, double rate_hz) {
+  return Gain(u)(nodes_of(bin, rate_hz, u.lag));
+}
 
 /// Which of the three unknowns a family has.
 std::vector<std::size_t> free_of(NamedShape::Family family) {
   if (family == NamedShape::Family::shelf) return {0, 2, 3};
   if (family == NamedShape::Family::second_order) return {0, 1, 3};
-  if (family == NamedShape::Family::high_pass) return {0};
+  if (family == NamedShape::Family::high_pass || family == NamedShape::Family::echo) return {0};
   return {0, 1, 2, 3};
 }
 
 class Fit {
  public:
-  Fit(const std::vector<PowerBin>& inside, double rate_hz, const TermSet& terms)
+  Fit(const std::vector<PowerBin>& inside, double rate_hz, const TermSet& terms, int lag)
       : plain_(bin_problem(inside)), terms_(terms) {
-    for (const PowerBin& bin : inside) nodes_.push_back(nodes_of(bin, rate_hz));
+    for (const PowerBin& bin : inside) nodes_.push_back(nodes_of(bin, rate_hz, lag));
   }
 
   /// Where the terms are likeliest beside a shape; `near`: those beside a shape close to it.
@@ -226,7 +241,7 @@ std::vector<Unknowns> grid(NamedShape::Family family, const std::vector<PowerBin
   for (double square = top; square > top / (kWidest * kWidest); square /= kApart)
     for (const double damping : dampings)
       for (const double zero : zeros)
-        out.push_back({family, {std::log(square), std::log(damping), std::log(square * zero), 0}});
+        out.push_back({family, {std::log(square), std::log(damping), std::log(square * zero), 0}, 0});
   return out;
 }
 
@@ -234,12 +249,28 @@ std::vector<Unknowns> grid(NamedShape::Family family, const std::vector<PowerBin
 std::vector<Unknowns> of_third_order(const Unknowns& second) {
   std::vector<Unknowns> out;
   for (const double real : {0.7, 2.0, 8.0})
-    out.push_back(
-        {NamedShape::Family::third_order, {second.x[0], second.x[1] + std::log(0.7), second.x[0] + std::log(real), 0}});
+    out.push_back({NamedShape::Family::third_order,
+                   {second.x[0], second.x[1] + std::log(0.7), second.x[0] + std::log(real), 0},
+                   0});
   return out;
 }
 
 }  // namespace
+
+NamedShape echo_shape(double echo, int lag, double rate_hz) {
+  NamedShape out;
+  out.family = NamedShape::Family::echo;
+  out.pole_hz = out.zero_hz = rate_hz / (2 * lag);
+  out.echo = echo;
+  out.lag = lag;
+  return out;
+}
+
+double mean_cosine(const PowerBin& bin, int lag, double rate_hz) {
+  const double angle = 2 * std::numbers::pi * lag / rate_hz;
+  const double from = angle * bin.low_hz, to = angle * std::min(bin.high_hz, rate_hz / 2);
+  return to - from > 1e-6 ? (std::sin(to) - std::sin(from)) / (to - from) : std::cos(from);
+}
 
 std::size_t unknowns_of(NamedShape::Family family) {
   return family == NamedShape::Family::none ? 0 : free_of(family).size();
@@ -262,9 +293,10 @@ std::optional<NamedShape> fit_named_shape(const std::vector<PowerBin>& inside, d
                                           NamedShape::Family family, const std::optional<NamedShape>& start,
                                           double hopeless) {
   const bool goes_on = start && start->family == family;
-  // In the next, narrower band few steps are left; the start of a high-pass is a corner of a grid.
-  const int steps = goes_on && family != NamedShape::Family::high_pass ? 4 : 12;
-  const Fit fit(inside, rate_hz, terms);
+  // In the next, narrower band few steps are left; the start of a high-pass or an echo is one of a grid.
+  const bool one = unknowns_of(family) == 1;
+  const int steps = goes_on && !one ? 4 : 12;
+  const Fit fit(inside, rate_hz, terms, start ? start->lag : 0);
   Unknowns best;
   ScoringResult now;
   now.half_deviance = std::numeric_limits<double>::infinity();
@@ -303,6 +335,8 @@ std::string named_shape_text(const NamedShape& shape) {
     return fmt::format("a shelf, {} times between {} and {}", brief_text(shape.pole_hz / shape.zero_hz, 3),
                        detail::frequency_text(std::min(shape.pole_hz, shape.zero_hz), 3),
                        detail::frequency_text(std::max(shape.pole_hz, shape.zero_hz), 3));
+  if (shape.family == NamedShape::Family::echo)
+    return fmt::format("an echo: {} of each sample again {} samples later", brief_text(shape.echo, 2), shape.lag);
   const bool third = shape.family == NamedShape::Family::third_order;
   std::string text = fmt::format("a {}-order low-pass at {}, damping {}", third ? "third" : "second",
                                  detail::frequency_text(shape.pole_hz, 3), brief_text(shape.damping, 2));

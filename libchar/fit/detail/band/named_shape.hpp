@@ -18,17 +18,25 @@ namespace libchar {
 ///   third_order:  D = the same times 1 + s/s_r, no zero
 ///   loop:         the same with the zero                  (alpha-beta trackers, closed loops)
 /// and high_pass:    |H|² = (s/s_p) / (1 + s/s_p)            (AC coupling, complementary outputs)
+///     echo:         |H|² = (1 + g² + 2 g cos(2 pi f k / rate)) / (1 + g)², once more after k samples (combs, two taps)
 struct NamedShape {
-  enum class Family { none, shelf, second_order, third_order, loop, high_pass };
+  enum class Family { none, shelf, second_order, third_order, loop, high_pass, echo };
   Family family = Family::none;
   double pole_hz = 0, zero_hz = 0;  ///< corners; above half the rate where the slope begins there
   double damping = 1;
   double tilt = 0;          ///< c
   double real_pole_hz = 0;  ///< of the third order
+  double echo = 0;          ///< g
+  int lag = 0;              ///< k; both corners are then where the gain is furthest from that at 0
   bool operator==(const NamedShape&) const = default;
 };
 
-/// Unknowns of a family: ln s_p, then ln zeta, then ln s_z or ln s_r, then c.
+/// Of g where its first extremum is at rate / (2 k).
+NamedShape echo_shape(double echo, int lag, double rate_hz);
+/// Mean of cos(2 pi f k / rate) over a bin.
+double mean_cosine(const PowerBin& bin, int lag, double rate_hz);
+
+/// Unknowns of a family: ln s_p, then ln zeta, then ln s_z or ln s_r, then c; of an echo artanh g.
 std::size_t unknowns_of(NamedShape::Family family);
 /// ln |H|², a mean over the bin.
 double named_log_gain(const NamedShape& shape, const PowerBin& bin, double rate_hz);

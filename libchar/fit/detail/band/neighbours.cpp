@@ -188,7 +188,7 @@ void shift_to(const Mixture& theta, const NoiseFit& fit, std::array<NeighbourRea
 void shift_to_narrower(const std::vector<PowerBin>& bins, const Band& band, double less, const TermSet& kept,
                        const NoiseFit& fit, std::array<NeighbourReach, kTerms>& reach) {
   constexpr double kAbove = 1.2;  ///< of the corner
-  if (band.named.family == Family::none || band.named.family == Family::shelf) return;
+  if (band.named.family == Family::none || band.named.family == Family::shelf || band.named.lag > 0) return;
   Band narrow = band;
   narrow.top_hz = less * std::min(band.top_hz, fit.rate_hz / 2);
   if (!(narrow.top_hz > kAbove * band.named.pole_hz)) return;
@@ -281,7 +281,7 @@ void reach_to_neighbours(const std::vector<PowerBin>& bins, const Band& band, co
     const bool goes_on = other.named.family == Family::none;
     const ScoringResult there = likeliest(problem, goes_on ? best : ModelPoint{best.theta, {}}, kept, terms);
     const bool rises = other.named.zero_hz > 0 && other.named.pole_hz > other.named.zero_hz;
-    const bool of_level = plain ? other.named.family == Family::shelf : band.low_pass && rises;
+    const bool of_level = plain ? other.named.family != Family::high_pass : band.low_pass && rises;
     if (of_level && !shows_white_below(bins, other.named, there.at.theta)) continue;
     // Of a band that describes nothing a neighbour may be likelier than any number: all the weight is then its own.
     const double likelier = chosen - there.half_deviance - price_of(other);
