@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "libchar/fit/signs/rounding.hpp"
 #include "tests/support/digital.hpp"
@@ -139,6 +140,28 @@ TEST_CASE("digital: what rounding adds is known no better than where between two
     }
 }
 
+TEST_CASE("digital: counts are skewed, and rounded Gaussian noise is not") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    std::mt19937_64 engine(seed);
+    for (const double rate : {1.0, 4.0}) {
+      std::poisson_distribution<int> count(rate);
+      std::vector<double> y(kDigitalSamples);
+      for (double& value : y) value = count(engine);
+      const DigitalFaults faults = test::digital_faults(y, kDigitalRate, 1);
+      CAPTURE(seed, rate);
+      REQUIRE(faults.rounding);
+      CHECK(faults.rounding->of_counts);
+    }
+    for (const double step : {0.3, 0.7, 1.2}) {
+      const DigitalFaults faults =
+          test::digital_faults(rounded(noise(seed), step * kSigma), kDigitalRate, step * kSigma);
+      CAPTURE(seed, step);
+      REQUIRE(faults.rounding);
+      CHECK(!faults.rounding->of_counts);
+    }
+  }
+}
+
 TEST_CASE("digital: a clean recording of a real sensor") {
   NEEDS_SHARED("data/static_adis16405_run1.npy");
   const test::Array array = test::npy(test::shared("data/static_adis16405_run1.npy"));
@@ -174,11 +197,27 @@ TEST_CASE("digital: rounding hides white noise only where it is a part of it") {
     white.relative_sd = 0.3;
     white.ci95 = {0, 0.2};
     fit.theta[static_cast<std::size_t>(Term::white)] = 0.01;
-    detail::take_out_rounding({1e-5, variance, 0}, fit);
+    detail::take_out_rounding({1e-5, variance, 0, false}, fit);
     return fit[Term::white];
   };
   CHECK(after(1e-11).status == Status::detected);
   CHECK(*after(1e-11).value == Approx(0.1));
   CHECK(after(1e-11).ci95.low == 0);
   CHECK(after(0.009).status == Status::not_detected);
+}
+
+TEST_CASE("digital: of counts no rounding is taken out, and the interval holds N without it") {
+  NoiseFit fit;
+  fit.rate_hz = 1;
+  Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
+  white.status = Status::detected;
+  white.value = 2;
+  white.relative_sd = 0.005;
+  white.ci95 = {1.98, 2.02};
+  detail::take_out_rounding({1, 1.0 / 12, 0, true}, fit);
+  CHECK(*white.value == 2);
+  CHECK(white.ci95.low == Approx(std::sqrt(1.98 * 1.98 - 1.0 / 12)));
+  CHECK(white.ci95.high == 2.02);
+  CHECK(fit.rounding == 0);
+  CHECK(fit.findings.size() == 1);
 }

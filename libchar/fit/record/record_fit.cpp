@@ -69,30 +69,44 @@ void widen_for_tails(double difference_kurtosis, std::uint64_t samples, NoiseFit
                                    brief_text(difference_kurtosis), brief_text(wider, 2))));
 }
 
+/// The white noise that most of the differences of samples are: of a clock whose phase is read, that of the readings.
+struct DifferencesOf {
+  Term term = Term::white;
+  double density = 0;  ///< the coefficient's square of a variance of one, as half of the differences have it
+};
+DifferencesOf differences_of(const NoiseFit& fit, double rate_hz, bool clock) {
+  const std::optional<double> white = fit[Term::white].value, phase = fit[Term::quantization].value;
+  const double density_of_phase = 1 / (3 * rate_hz * rate_hz);  // var(x'') = 6 var(x)
+  if (clock && phase && *phase * *phase / density_of_phase > white.value_or(0) * white.value_or(0) * rate_hz)
+    return {Term::quantization, density_of_phase};
+  return {Term::white, 1 / rate_hz};
+}
+
 /// Outliers that are too small to be left out one by one are white noise to a spectrum: their
-/// variance is taken out of N².
-void take_out_outliers(const std::optional<OutlierVariance>& outliers, double rate_hz, NoiseFit& fit) {
-  constexpr auto kWhite = static_cast<std::size_t>(Term::white);
-  Coefficient& white = fit.term[kWhite];
-  if (!outliers || !white.value) return;
-  const double square = *white.value * *white.value, theirs = outliers->variance / rate_hz;
+/// variance is taken out of N², or of Q² of a clock's phase.
+void take_out_outliers(const std::optional<OutlierVariance>& outliers, double rate_hz, bool clock, NoiseFit& fit) {
+  const DifferencesOf of = differences_of(fit, rate_hz, clock);
+  const auto index = static_cast<std::size_t>(of.term);
+  Coefficient& term = fit.term[index];
+  if (!outliers || !term.value) return;
+  const double square = *term.value * *term.value, theirs = outliers->variance * of.density;
   if (!(theirs < square)) return;
-  const double core = std::sqrt(square - theirs), share = core / *white.value;
-  const double more = outliers->sd / rate_hz / (2 * core * core);
-  widen_by(more, white);
-  white.ci95 = {share * white.ci95.low, share * white.ci95.high};
-  fit.covariance[kWhite][kWhite] += 4 * more * more;
-  fit.theta[kWhite] *= share * share;
+  const double core = std::sqrt(square - theirs), share = core / *term.value;
+  const double more = outliers->sd * of.density / (2 * core * core);
+  widen_by(more, term);
+  term.ci95 = {share * term.ci95.low, share * term.ci95.high};
+  fit.covariance[index][index] += 4 * more * more;
+  fit.theta[index] *= share * share;
   constexpr double kNoticeable = 0.1;  // of the standard deviation of N
-  const bool noticeable = outliers->seen && 1 / share - 1 > kNoticeable * white.relative_sd;
+  const bool noticeable = outliers->seen && 1 / share - 1 > kNoticeable * term.relative_sd;
+  const std::string_view what = of.term == Term::white ? "N" : "the white phase noise";
   if (noticeable)
-    fit.findings.push_back(finding(
-        "outliers_in_n",
-        fmt::format(
-            "Outliers too small to be left out one by one add {} to N: N is that of the Gaussian core of the samples.",
-            percent_text(1 / share - 1)),
-        "small outliers were taken out of N"));
-  white.value = core;
+    fit.findings.push_back(finding("outliers_in_n",
+                                   fmt::format("Outliers too small to be left out one by one add {} to {}: it is that "
+                                               "of the Gaussian core of the samples.",
+                                               percent_text(1 / share - 1), what),
+                                   fmt::format("small outliers were taken out of {}", what)));
+  term.value = core;
 }
 
 constexpr std::uint64_t kMeansOfPoint = 8;  ///< from which on terms of a pyramid start often enough
@@ -265,7 +279,7 @@ NoiseFit fit_whole(std::span<const double> record, double rate_hz, const AllanCu
     const bool counted = options.difference_kurtosis && as_recorded;
     widen_for_tails(counted ? *options.difference_kurtosis : kurtosis_of_differences(data), samples, fit);
   }
-  take_out_outliers(despiked.answer.outliers, rate_hz, fit);
+  take_out_outliers(despiked.answer.outliers, rate_hz, options.clock, fit);
   report_means(means, options, fit);
   add_spike_answer(despiked.answer, fit);
   if (options.remedies && options.stationarity) {
@@ -296,7 +310,7 @@ NoiseFit fit_sums(RecordSums sums, double rate_hz, const AllanCurve* allan, cons
   // Spikes and steps are in the kurtosis of the differences; what it would be without them is not known.
   if (!options.clock && options.difference_kurtosis && !cleaned && !has_step(events))
     widen_for_tails(*options.difference_kurtosis, samples, fit);
-  take_out_outliers(answer.outliers, rate_hz, fit);
+  take_out_outliers(answer.outliers, rate_hz, options.clock, fit);
   report_means(means, options, fit);
   add_spike_answer(answer, fit);
   if (options.remedies && options.stationarity) {

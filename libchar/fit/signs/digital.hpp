@@ -38,8 +38,9 @@ struct DigitalFaults {
   /// from sample to sample, white noise behind the sensor's.
   struct Rounding {
     double step = 0;
-    double variance = 0;  ///< of a sample
-    double sd = 0;        ///< of `variance`: it depends on where between two steps the mean is
+    double variance = 0;     ///< of a sample
+    double sd = 0;           ///< of `variance`: it depends on where between two steps the mean is
+    bool of_counts = false;  ///< the noise is skewed, as counts are that nobody rounded
   };
   std::vector<Rail> rails;
   std::optional<HeldValues> held;
@@ -66,9 +67,14 @@ struct DigitalSums {
     double step = 0;  ///< least distance from zero; 0: nothing was counted
     double zeros = 0, nearest = 0, next = 0;
   };
+  /// Second differences of samples that lie on a coarse grid: sums of squares and cubes.
+  struct Skew {
+    double count = 0, squares = 0, cubes = 0;
+  };
   double present = 0;
   AtRail low, high;
   AtZero zero;
+  Skew skew;
 };
 
 /// `census` of the same samples, and how many of them are missing.

@@ -16,6 +16,7 @@ namespace libchar {
 namespace {
 
 constexpr auto kRoundedTerm = static_cast<std::size_t>(Term::white);
+constexpr double kShownShare = 0.1;  ///< of the standard deviation of N
 
 double root_beside(double value, double square) { return std::sqrt(std::max(0.0, value * value - square)); }
 
@@ -51,18 +52,31 @@ void limit_white(double density, Coefficient& white) {
 
 void say_rounding(const DigitalFaults::Rounding& rounding, double before, const NoiseFit& fit,
                   std::vector<Finding>& findings) {
-  constexpr double kNoticeable = 0.1;  // of the standard deviation of N
   const Coefficient& white = fit.term[kRoundedTerm];
   const std::string step = brief_text(rounding.step);
   if (!white.value)
     findings.push_back(finding(
         "rounding_in_n", fmt::format("White noise does not exceed that of rounding to {}: N has only a limit.", step)));
-  else if (before / *white.value - 1 > kNoticeable * white.relative_sd)
+  else if (before / *white.value - 1 > kShownShare * white.relative_sd)
     findings.push_back(finding(
         "rounding_in_n",
         fmt::format("Rounding to {} adds {} to the white noise of the samples: N is the sensor's, before rounding.",
                     step, percent_text(before / *white.value - 1)),
         "the noise of rounding was taken out of N"));
+}
+
+/// Nobody rounded counts, and skewed noise that was rounded looks like them: the interval knows both.
+void reach_without(const DigitalFaults::Rounding& rounding, double density, NoiseFit& fit) {
+  Coefficient& white = fit.term[kRoundedTerm];
+  const double share = 1 - root_beside(*white.value, density) / *white.value;
+  white.ci95.low = root_beside(white.ci95.low, density);
+  if (share > kShownShare * white.relative_sd)
+    fit.findings.push_back(finding(
+        "rounding_in_n",
+        fmt::format("The noise is skewed, as counts are. If the values are not counts and were rounded to {}, N is "
+                    "smaller by {}: its interval holds both.",
+                    brief_text(rounding.step), percent_text(share)),
+        "the interval of N holds it with and without the noise of rounding"));
 }
 
 }  // namespace
@@ -75,6 +89,7 @@ void detail::take_out_rounding(const DigitalFaults::Rounding& rounding, NoiseFit
   if (!(fit.rate_hz > 0) || !(rounding.variance > 0)) return;
   const double density = rounding.variance / fit.rate_hz, before = *white.value;
   if (!(white.ci95.high * white.ci95.high > density)) return;
+  if (rounding.of_counts) return reach_without(rounding, density, fit);
   take_out_of_shape(density, fit);
   fit.rounding = density;
   double& theta = fit.theta[kRoundedTerm];
