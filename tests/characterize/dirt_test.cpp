@@ -88,6 +88,41 @@ TEST_CASE("a wild reading of a phase is taken out before the phase is difference
   }
 }
 
+TEST_CASE("missing readings of a phase leave the Allan curve and the fit where they were") {
+  constexpr std::size_t kReadings = 20000;
+  test::Gaussian normal(3);
+  std::vector<double> whole(kReadings);
+  double walk = 0;
+  for (std::size_t t = 0; t < kReadings; ++t)
+    whole[t] = 1234.5 * static_cast<double>(t) + 3 * normal() + (walk += 0.05 * normal());
+  CharacterizeOptions options;
+  options.data = SampleKind::phase;
+  const auto result_of = [&](const std::vector<double>& x) {
+    return characterize(recording_of({x}, 1), options).channels[0];
+  };
+  const ChannelResult full = result_of(whole);
+  struct Row {
+    std::size_t run;
+    double share;
+  };
+  for (const Row row : {Row{1, 0.05}, Row{1, 0.3}, Row{10, 0.05}, Row{500, 0.025}}) {
+    std::vector<double> x = whole;
+    for (std::size_t t = row.run; t + row.run + 1 < kReadings; t += row.run)
+      if (row.run == 500 ? t == 7000 : normal.uniform() < row.share)
+        for (std::size_t i = 0; i < row.run; ++i) x[t + i] = std::nan("");
+    const ChannelResult result = result_of(x);
+    CAPTURE(row.run, row.share);
+    REQUIRE(result.allan.points.size() == full.allan.points.size());
+    for (std::size_t k = 0; k < full.allan.points.size(); ++k)
+      if (full.allan.points[k].m <= 1024)
+        CHECK(result.allan.points[k].deviation == Approx(full.allan.points[k].deviation).epsilon(0.025));
+    CHECK(result.allan.notes.size() == full.allan.notes.size() + 1);
+    const double q = (*full.fit)[Term::quantization].value.value();
+    CHECK((*result.fit)[Term::quantization].value.value() == Approx(q).epsilon(0.02));
+    CHECK((*result.fit)[Term::quantization].status == Status::detected);
+  }
+}
+
 TEST_CASE("a counter gets curves and no fit, and the reason is said") {
   std::vector<double> index(5000), modulo(5000);
   for (std::size_t t = 0; t < index.size(); ++t) {

@@ -531,6 +531,23 @@ TEST_CASE("white noise behind a high-pass is what is above its corner, whatever 
   }
 }
 
+TEST_CASE("a clock that is steered is behind a high-pass, and one whose phase is read with noise is not") {
+  FitOptions clock;
+  clock.clock = true;
+  test::Gaussian normal(37);
+  int steered = 0, free = 0;
+  for (int r = 0; r < 12; ++r) {
+    const NoiseFit locked = fit_record(filtered_white(normal, {1, -1}, {-0.995}), kRate, nullptr, clock);
+    steered += says(locked, "high_passed") ? 1 : 0;
+    std::vector<double> reading(20001), y(20000);
+    for (double& value : reading) value = 3 * normal();
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] = normal() + reading[i + 1] - reading[i];
+    free += says(fit_record(y, kRate, nullptr, clock), "high_passed") ? 1 : 0;
+  }
+  CHECK(steered >= 9);
+  CHECK(free == 0);
+}
+
 TEST_CASE("the zeros that the bilinear transform puts at half the rate are a part of a named shape") {
   // Butterworth's two at a tenth. Without them the top half octave had to be left out in every record.
   test::Gaussian normal(23);

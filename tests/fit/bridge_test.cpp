@@ -52,6 +52,28 @@ TEST_CASE("bridged records keep their variance and correlation") {
   }
 }
 
+TEST_CASE("a phase is bridged where it was, however far its frequency is off") {
+  test::Gaussian gauss(9);
+  Record walk(20000);
+  double level = 0;
+  for (std::size_t t = 0; t < walk.size(); ++t) walk[t] = 1e4 * static_cast<double>(t) + (level += gauss());
+  for (const std::size_t run : {std::size_t{1}, std::size_t{12}, std::size_t{700}}) {
+    Record phase = with_missing(walk, 0.1, run, 4);
+    std::size_t missing = 0;
+    for (const double value : phase) missing += std::isnan(value);
+    CHECK(bridge_phase(phase) == missing);
+    double square = 0;
+    for (std::size_t t = 1; t < phase.size(); ++t) square += std::pow(phase[t] - phase[t - 1] - 1e4, 2);
+    INFO(run);
+    CHECK(square / static_cast<double>(phase.size() - 1) == Approx(1).epsilon(0.06));
+  }
+  Record mostly = with_missing(walk, 0.9, 1, 4);
+  CHECK(bridge_phase(mostly) == 0);
+  Record none = walk;
+  CHECK(bridge_phase(none) == 0);
+  CHECK(none == walk);
+}
+
 TEST_CASE("what is not bridged") {
   const Record y = autoregressive(20000, 0, 5);
   CHECK(bridged(y).empty());

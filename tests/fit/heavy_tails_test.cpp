@@ -99,6 +99,23 @@ TEST_CASE("values held and steps are no small outliers") {
   }
 }
 
+TEST_CASE("small outliers of a clock's readings are taken out of its phase noise") {
+  // In one reading of a hundred, five standard deviations: Q would be 11 % too large.
+  FitOptions clock;
+  clock.clock = true;
+  test::Gaussian gauss(13);
+  double mean = 0;
+  for (int r = 0; r < 8; ++r) {
+    std::vector<double> x(10001), y(10000);
+    for (double& reading : x) reading = 3 * gauss() + (gauss.uniform() < 0.01 ? 15 * gauss() : 0);
+    for (std::size_t t = 0; t < y.size(); ++t) y[t] = gauss() + x[t + 1] - x[t];
+    const NoiseFit fit = fit_record(y, 1, nullptr, clock);
+    CHECK(has(fit.findings, "outliers_in_n"));
+    mean += fit[Term::quantization].value.value() / 8;
+  }
+  CHECK(mean == Approx(3).epsilon(0.03));
+}
+
 TEST_CASE("Gaussian noise keeps the interval of its likelihood") {
   test::Gaussian gauss(5);
   std::vector<double> y(20000);

@@ -21,6 +21,7 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
+#include "libchar/fit/detail/band/bridge.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/remedies.hpp"
 #include "libchar/fit/signs/motion.hpp"
@@ -115,6 +116,7 @@ class Finish {
   double phase_factor_ = 1;   ///< of its unit, to fractional frequency
   std::vector<double> kept_;  ///< as a rate: all samples, or none
   DespikedRecord despiked_;   ///< rate of the phase without its spikes, when it has some
+  std::size_t filled_ = 0;    ///< readings of the phase that were missing
   std::vector<NoiseType> noise_types_;
   std::vector<AllanPoint> between_;    ///< octaves, for the plot: of the same sums
   std::optional<EventSeries> series_;  ///< where the search for motion has made it
@@ -139,6 +141,8 @@ void Finish::make_rate(double rate_hz) {
     return;
   }
   if (options_.fit.remedies && wants_fit() && is_whole()) despiked_ = without_spikes(kept_);
+  bridge_phase(despiked_.samples);
+  filled_ = bridge_phase(kept_);
   const double per_s = rate_hz * phase_factor_;
   if (!is_whole()) scale_sums(per_s);
   noise_types_ = noise_types(rate_hz);
@@ -212,6 +216,9 @@ AllanCurve Finish::wanted_curve(const AllanCurve& octaves, DeviationType type, d
 
 void Finish::add_curves(const AllanCurve& octaves, double rate_hz, ChannelResult& result) const {
   attempt(result, "Allan deviation", [&] { result.allan = wanted_curve(octaves, options_.allan.type, rate_hz); });
+  if (filled_ > 0)
+    result.allan.notes.push_back(plural(filled_, "missing reading") +
+                                 " of the phase filled with a draw of what those around allow");
   for (const DeviationType type : options_.more_types) {
     result.more_allan.push_back({});
     result.more_allan.back().type = type;

@@ -835,6 +835,17 @@ bool is_shelf(const Search& search, const Trial& high_passed) {
   return shelf && shelf->half_deviance < high_passed.half_deviance + kAsLikely;
 }
 
+/// The level above a high-pass: what rises from its corner on is phase noise, which no high-pass is needed for.
+bool seen_above(const Search& search, const Trial& high_passed) {
+  constexpr double kHighest = 20;  ///< corners below the rate
+  const double corner_hz = high_passed.band.named.pole_hz;
+  if (!(corner_hz < search.rate_hz / kHighest)) return false;
+  for (const PowerBin& bin : search.bins)
+    if (bin.low_hz <= corner_hz && bin.high_hz >= corner_hz)
+      return !(high_passed.theta[kQuantizationTerm] * bin.unit[kQuantizationTerm] > high_passed.theta[0] * bin.unit[0]);
+  return true;
+}
+
 /// The slow end falls: a high-pass, where it explains much that the terms do not, and the rest passes with it. A walk
 /// leaves a plateau behind a high-pass, as processes do: then it is none, and the band has `doubtful_end`.
 std::optional<Band> high_passed(const Search& search, Trial& unshaped, double slowest_hz) {
@@ -891,6 +902,7 @@ std::optional<Band> high_passed(const Search& search, Trial& unshaped, double sl
   // What a cut would leave of a record that falls this clearly is its foot.
   const bool clear = unshaped.half_deviance - least > kClear;
   if (!trial || chance_of(*trial) < (clear ? search.options.misfit : search.options.probability)) return std::nullopt;
+  if (!seen_above(search, *trial)) return std::nullopt;
   const double slow_end = slow_end_of(search, *trial);
   unshaped.band.doubtful_end = slow_end > kFalls;
   if (unshaped.band.doubtful_end || (slow_end > kShelf && is_shelf(search, *trial))) return std::nullopt;
@@ -932,9 +944,10 @@ Band passing_band(const std::vector<PowerBin>& bins, double rate_hz, const TermS
   std::optional<Trial> unshaped = search.at(whole);
   if (!unshaped) return whole;
   const double slowest_hz = search.slowest_hz();
-  const ShelfTest shelf = options.corners ? shelf_test(search, *unshaped, slowest_hz) : ShelfTest{};
+  ShelfTest shelf = shelf_test(search, *unshaped, slowest_hz);
   if (shelf.rising > options.high_pass)
     if (const std::optional<Band> falling = high_passed(search, *unshaped, slowest_hz)) return *falling;
+  if (!options.corners) shelf = {};
   const bool describes = chance_of(*unshaped) >= options.probability_unshaped;
   const bool peaked = options.corners && highest_peak(bins, *unshaped).deviations > options.peak;
   const bool echoes = shelf.near_echo > options.shelf;

@@ -53,7 +53,7 @@ struct BandOptions {
   int most_orders = 4;
   std::optional<double> tau_s;  ///< a Gauss-Markov process of this correlation time is offered
   bool small_shapes = false;    ///< the top may have a shape that is too small for the tests
-  bool corners = false;         ///< shelves and high-passes are looked for: not of a clock, whose noise rises
+  bool corners = false;         ///< shelves, echoes and peaks are looked for: not of a clock, whose noise rises
   double high_pass = 1.5;       ///< deviate from which on a high-pass is looked for
   double shelf = 3.9;           ///< deviate of a directed test from which on a shelf is looked for
   double echo = 4.5;            ///< the same of 31 tests for an echo

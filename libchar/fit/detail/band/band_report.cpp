@@ -297,11 +297,13 @@ void report_corner(const Band& band, NoiseFit& fit) {
   report_two_levels(band.named, fit);
   report_floor(band, fit);
   if (band.named.family != NamedShape::Family::high_pass) return;
-  fit.findings.push_back(finding("high_passed",
-                                 fmt::format("The slow end of the spectrum falls like that of {}: AC coupling, or an "
-                                             "output without its mean. B and K are those before the high-pass.",
-                                             named_shape_text(band.named)),
-                                 "the slow end of the spectrum falls as after a high-pass"));
+  fit.findings.push_back(
+      finding("high_passed",
+              fmt::format("The slow end of the spectrum falls like that of {}: AC coupling, an output "
+                          "without its mean, or a clock that is steered. B and K are those before "
+                          "the high-pass.",
+                          named_shape_text(band.named)),
+              "the slow end of the spectrum falls as after a high-pass"));
 }
 
 void report_doubtful_end(NoiseFit& fit) {
