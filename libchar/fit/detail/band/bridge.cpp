@@ -211,7 +211,6 @@ std::size_t bridge_phase(std::vector<double>& phase) {
     const std::size_t length = run.end - run.first;
     const bool walks = length > 1 && static_cast<double>(length) > width;
     const bool whole = walks ? bridge.lead_over(run, filled) : bridge.fill(run, filled);
-    if (!whole && length > kLongestBridge) continue;
     for (std::size_t t = run.first; t < run.end; ++t) {
       // Where as long a stretch is nowhere around, one by one.
       if (!whole && !bridge.fill({t, t + 1}, filled)) filled[t] = bridge.expected(t);
