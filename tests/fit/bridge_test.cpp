@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "libchar/fit/noise_fit.hpp"
+#include "libchar/fit/remedies.hpp"
 #include "tests/support/noise.hpp"
 
 using namespace libchar;
@@ -61,16 +62,16 @@ TEST_CASE("a phase is bridged where it was, however far its frequency is off") {
     Record phase = with_missing(walk, 0.1, run, 4);
     std::size_t missing = 0;
     for (const double value : phase) missing += std::isnan(value);
-    CHECK(bridge_phase(phase) == missing);
+    CHECK(detail::bridge_phase(phase) == missing);
     double square = 0;
     for (std::size_t t = 1; t < phase.size(); ++t) square += std::pow(phase[t] - phase[t - 1] - 1e4, 2);
     INFO(run);
     CHECK(square / static_cast<double>(phase.size() - 1) == Approx(1).epsilon(0.06));
   }
   Record mostly = with_missing(walk, 0.9, 1, 4);
-  CHECK(bridge_phase(mostly) == 0);
+  CHECK(detail::bridge_phase(mostly) == 0);
   Record none = walk;
-  CHECK(bridge_phase(none) == 0);
+  CHECK(detail::bridge_phase(none) == 0);
   CHECK(none == walk);
 }
 

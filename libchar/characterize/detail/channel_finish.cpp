@@ -21,7 +21,6 @@
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
-#include "libchar/fit/detail/band/bridge.hpp"
 #include "libchar/fit/noise_fit.hpp"
 #include "libchar/fit/remedies.hpp"
 #include "libchar/fit/signs/motion.hpp"
@@ -141,8 +140,8 @@ void Finish::make_rate(double rate_hz) {
     return;
   }
   if (options_.fit.remedies && wants_fit() && is_whole()) despiked_ = without_spikes(kept_);
-  bridge_phase(despiked_.samples);
-  filled_ = bridge_phase(kept_);
+  detail::bridge_phase(despiked_.samples);
+  filled_ = detail::bridge_phase(kept_);
   const double per_s = rate_hz * phase_factor_;
   if (!is_whole()) scale_sums(per_s);
   noise_types_ = noise_types(rate_hz);

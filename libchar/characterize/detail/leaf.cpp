@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "libchar/core/numeric/present.hpp"
-#include "libchar/fit/detail/band/bridge.hpp"
 #include "libchar/fit/remedies.hpp"
 
 namespace libchar {
@@ -132,7 +131,7 @@ ChannelSums LeafStage::take(std::span<const double> samples, bool last, SampleMe
   sums.record.spikes.samples = found.samples;
   if (options_->data == SampleKind::frequency) sums.types = types_of_rate(samples, 1);
   if (is_phase()) {
-    for (std::vector<double>* phase : {&cleaned, &rate_}) bridge_phase(*phase);
+    for (std::vector<double>* phase : {&cleaned, &rate_}) detail::bridge_phase(*phase);
     sums.types = lag1_noise_types(clean ? cleaned : rate_, 1);
     difference(cleaned);
     difference(rate_);

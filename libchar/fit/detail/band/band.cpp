@@ -783,7 +783,8 @@ Band low_pass_or(const Search& search, Trial trial, const Band& whole, double sl
   return other && other->half_deviance < trial.half_deviance - kWorth ? *named : trial.band;
 }
 
-/// The whole band behind an echo, where that describes it and neither a pole nor a polynomial of two orders does better.
+/// The whole band behind an echo, where that describes it and neither a pole nor a polynomial of two orders does as
+/// well.
 std::optional<Band> echo_in(const Search& search, Band band, const Trial& plain, const NamedShape& start) {
   constexpr double kMost = 0.9, kWorth = 1;  ///< of g; of ln L
   TermSet offered = search.terms;

@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "libchar/core/numeric/present.hpp"
+#include "libchar/fit/remedies.hpp"
 
 namespace libchar {
 namespace {
@@ -189,7 +190,7 @@ static double width_of_noise(std::span<const double> phase) {
   return kFar * of_phase / std::max(first - 2 * of_phase, kLeastShare * first);
 }
 
-std::size_t bridge_phase(std::vector<double>& phase) {
+std::size_t detail::bridge_phase(std::vector<double>& phase) {
   const std::vector<MissingRun> runs = short_runs(phase, phase.size() / kLongestOfPhase, kMostOfPhase);
   if (runs.empty()) return 0;
   const auto is_there = [](double value) { return !std::isnan(value); };
