@@ -511,7 +511,7 @@ void Fusing::check_readings() {
     names.push_back(learnt_.sensors[i].name);
     units.push_back(result_.sensors[i].unit);
   }
-  detail::warn_of_changes(check_.readings->changes(learnt_readings()), names, units, {0, instants_->info().rate_hz},
+  detail::warn_of_changes(*check_.readings, learnt_readings(), names, units, {0, instants_->info().rate_hz},
                           result_.warnings);
 }
 

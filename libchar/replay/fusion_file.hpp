@@ -2,7 +2,6 @@
 // What a replay learnt of an array and of the algorithms that fuse it: fusion.yaml, which `fuse` applies
 // to a log (docs/fuse.md). Numbers read back to the same doubles.
 
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include "libchar/core/document/fields.hpp"
 #include "libchar/core/finding.hpp"
 #include "libchar/fusion/learnt.hpp"
+#include "libchar/replay/common_errors.hpp"
 #include "libchar/scene/scene.hpp"
 
 namespace libchar {
@@ -54,16 +54,9 @@ struct LearntSensor {
   bool left_out = false;  ///< it had no samples: algorithms were not given it
 };
 
-struct LearntInput {
+struct LearntInput : detail::CommonErrors {
   std::string name, unit;
   std::optional<double> reference_offset;  ///< subtracted from the reference: it is not in the estimates
-  std::optional<double> level_sd;          ///< of the level, by what the sensors' means differ
-  std::optional<double> gain_sd;           ///< of the gain that all share, by what the sensors' gains differ
-  std::optional<double> gain_about;        ///< input at which that does not matter
-  /// The deviation `sd` of an estimate `x`, and what no number of samples tells.
-  double with_common(double sd, double x) const {
-    return std::hypot(sd, level_sd.value_or(0), gain_sd.value_or(0) * (x - gain_about.value_or(0)));
-  }
 };
 
 struct LearntAlgorithm {

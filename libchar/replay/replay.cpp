@@ -140,9 +140,7 @@ class Replay {
                    [&](const InstantBlock& b) { push_reading(b.samples, plan_.run_from, meter); });
     const auto found = meter ? meter->level(taken_out()) : std::nullopt;
     if (!found) return;
-    knowledge_.level_sd = found->sd;
-    if (found->gain_sd > 0) knowledge_.gain_sd = found->gain_sd;
-    knowledge_.gain_about = found->about;
+    knowledge_.common = found->common;
     if (!found->matters || scene_.align) return;  // what is reported only is fused as recorded
     for (std::size_t k = 0; k < found->offsets.size(); ++k) knowledge_.offsets[live(k)] = found->offsets[k];
     instants_.set_offsets(knowledge_.offsets);
@@ -153,7 +151,7 @@ class Replay {
     std::vector<detail::TakenOut> out;
     const std::size_t sensors = plan_.live.empty() ? scene_.sensors.size() : plan_.live.size();
     for (std::size_t k = 0; k < sensors; ++k) {
-      out.push_back({knowledge_.level_sd ? knowledge_.offsets[live(k)] : 0, 0});
+      out.push_back({knowledge_.common.level_sd ? knowledge_.offsets[live(k)] : 0, 0});
       if (!alignment_ || !scene_.align->apply) continue;
       const fusion::ChannelAlignment& aligned = alignment_->alignment.channels[live(k)];
       out.back() = {aligned.bias, aligned.gain};
@@ -512,7 +510,7 @@ void Replay::add_facts(ReplayResult& out) const {
   out.warnings.merge(plan_.warnings);
   out.inputs = inputs();
   out.alignment = aligned_;
-  out.level_sd = knowledge_.level_sd;
+  static_cast<detail::CommonErrors&>(out) = knowledge_.common;
 }
 
 void Replay::add_sensors(ReplayResult& out, const ScoreOptions& scoring) const {

@@ -18,6 +18,7 @@
 #include "libchar/fusion/error_budget.hpp"
 #include "libchar/fusion/options.hpp"
 #include "libchar/log/recording.hpp"
+#include "libchar/replay/common_errors.hpp"
 #include "libchar/replay/error_meter.hpp"
 #include "libchar/replay/fault_answers.hpp"
 #include "libchar/replay/fusion_file.hpp"
@@ -191,7 +192,7 @@ struct DetectionAt {
 };
 
 /// What a result and its report say alike.
-struct ReplayFacts {
+struct ReplayFacts : detail::CommonErrors {
   std::vector<std::string> plan;  ///< sentences: what was read, learnt, run, skipped and why
   double rate_hz = 0;             ///< of the instants that are fused
   std::uint64_t instants = 0;     ///< of the run
@@ -208,8 +209,6 @@ struct ReplayFacts {
   std::string best_fusion;
   /// the 95 % interval of its RMSE over that of the best sensor; one input and a reference
   std::optional<Interval> best_over_sensor;
-  /// without a reference: deviation of the level, by what the sensors' means differ
-  std::optional<double> level_sd;
   /// without a reference, differences between the sensors' means are nearly all that is seen
   bool offsets_decide = false;
   /// the best method is not that of the smallest error but one that a failing sensor does not lead

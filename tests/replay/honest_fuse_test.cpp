@@ -244,6 +244,27 @@ TEST_CASE("reading meter: a gain that is another one from some time on is one th
     }
 }
 
+TEST_CASE("reading meter: a gain that is another one than where it was learnt") {
+  const auto meter_of = [](std::uint64_t seed, double gain) {
+    test::Gaussian gauss(seed);
+    Eigen::MatrixXd y(5, 24000);
+    for (Eigen::Index k = 0; k < y.cols(); ++k)
+      for (Eigen::Index i = 0; i < 5; ++i)
+        y(i, k) = (i == 1 ? gain : 1) * honest_truth(static_cast<int>(k)) + 0.1 * gauss();
+    detail::ReadingMeter meter(5, y.cols());
+    meter.push(y);
+    return meter;
+  };
+  const auto learnt = meter_of(4, 1).learnt();
+  CHECK(meter_of(5, 1).gain_drifts(0.003, &learnt).empty());
+  const detail::ReadingMeter other = meter_of(6, 0.9);
+  CHECK(other.gain_drifts(0.003).empty());
+  const auto found = other.gain_drifts(0.003, &learnt);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].sensor == 1);
+  CHECK(found[0].to == Approx(-0.1).margin(0.03));
+}
+
 TEST_CASE("reading meter: of a log of more blocks than are kept every second one says the same") {
   constexpr Eigen::Index kInstants = 540000;  // 2109 blocks
   test::Gaussian gauss(3);
@@ -315,6 +336,19 @@ TEST_CASE("fuse: a sensor that is broken from the start is told, a healthy log i
     CHECK_THAT(places, Contains(std::string(kind) == "from the middle" ? "from 5" : "from the start"));
     CHECK_THAT(places, !Contains("a: up") && !Contains("c: up") && !Contains("d: up"));
   }
+}
+
+TEST_CASE("fuse: single outliers of a sensor are told") {
+  HonestBench bench;
+  KeptColumns kept;
+  const FuseResult spiky =
+      bench.fuse_log(honest_log(7, [](double y, int k) { return k % 101 == 50 ? y + 3 : y; }), "minque", kept);
+  const Finding* found = spiky.warnings.find("sensor_apart");
+  REQUIRE(found != nullptr);
+  REQUIRE(found->where.rows.size() == 1);
+  CHECK_THAT(found->where.rows[0], StartsWith("b: outliers in "));
+  for (std::uint64_t seed = 2; seed < 6; ++seed)
+    CHECK(bench.fuse_log(honest_log(seed), "minque", kept).warnings.find("sensor_apart") == nullptr);
 }
 
 TEST_CASE(

@@ -231,6 +231,21 @@ TEST_CASE("verdict: without a reference the level is stated also where offsets a
   }
 }
 
+TEST_CASE("verdict: without a reference the gain that sensors share is stated beside the level") {
+  const test::SceneBench bench;
+  bench.put("array.csv", array_log({{0.1, 0, 1.02}, {0.1, 0, 0.97}, {0.1, 0, 1.05}, {0.1}}, 20000, 5));
+  const ReplayResult blind = replay(bench.read(scene_of(4, "algorithms: [mean, minque]\n")));
+  REQUIRE(blind.gain_sd);
+  REQUIRE(blind.gain_about);
+  CHECK(*blind.gain_sd == Approx(0.5 * 0.034 * 1.62).epsilon(0.3));  // Student's t of four sensors
+  CHECK(blind.learnt.inputs.at(0).gain_sd == blind.gain_sd);
+  CHECK(blind.learnt.inputs.at(0).gain_about == blind.gain_about);
+  CHECK_THAT(test::verdict_of(blind, false), Contains("The gain is known to ± "));
+  const ReplayResult seen = replay(bench.read(scene_of(4, "reference: truth\nalgorithms: [mean, minque]\n")));
+  CHECK_FALSE(seen.gain_sd);
+  CHECK_THAT(test::verdict_of(seen, false), !Contains("The gain is known"));
+}
+
 TEST_CASE("verdict: a sensor that is louder for most of the log is named") {
   for (const std::size_t n : {3U, 4U, 6U}) {
     std::vector<Sensor> sensors(n, Sensor{0.1});

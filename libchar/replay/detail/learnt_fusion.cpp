@@ -100,8 +100,7 @@ LearntFusion learnt_of(const Scene& scene, const ReplayPlan& plan, const Instant
   out.learning_instants = static_cast<std::uint64_t>(plan.array.learning_samples);
   out.fault_free_s = static_cast<double>(plan.array.fault_free_samples) / info.rate_hz;
   for (std::size_t j = 0; j < info.input_names.size(); ++j)
-    out.inputs.push_back({info.input_names[j], info.input_units[j], {}, knowledge.level_sd, knowledge.gain_sd, {}});
-  if (knowledge.gain_sd) out.inputs.back().gain_about = knowledge.gain_about;
+    out.inputs.push_back({knowledge.common, info.input_names[j], info.input_units[j], {}});
   if (const double offset = instants.reference_offset(); offset != 0)
     out.inputs[0].reference_offset = offset * info.output_scale;
   if (scene.tilt)

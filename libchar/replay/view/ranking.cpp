@@ -310,6 +310,12 @@ std::string level_sentence(const ReplayResult& r) {
       furthest->name, error_text(furthest->offset, r.inputs[0].unit), reach);
 }
 
+std::string gain_sentence(const ReplayResult& r) {
+  if (!r.gain_sd) return "";
+  return fmt::format("The gain is known to ± {} (95 %), from the differences between the gains of the sensors.",
+                     percent_text(kNormal95 * *r.gain_sd));
+}
+
 // Where the others have samples.
 std::string missing_samples(const ReplayResult& r) {
   constexpr double kWorthSaying = 0.1;  // of the instants
@@ -397,6 +403,7 @@ std::vector<std::string> verdict_sentences(const ReplayResult& r, bool costs) {
   else
     add(single.text);
   add(level_sentence(r));
+  add(gain_sentence(r));
   add(alone_sentence(r, best));
   add(doubtful_sensors(r));
   add(detected_faults(r, best));

@@ -320,11 +320,10 @@ std::vector<double> ReadingMeter::with_outliers(const Readings& readings) const 
 
 struct ReadingMeter::Place {
   double offset = 0, noise = 0, error = 0;  // standard error of the offset
+  double weight(bool alike) const { return alike || !(noise > 0) ? 1 : 1 / (noise * noise); }
 };
 
 namespace {
-
-double weight_of(const auto& one, bool alike) { return alike || !(one.noise > 0) ? 1 : 1 / (one.noise * one.noise); }
 
 /// Deviation of the weighted mean of offsets, widened to hold 95 % as normal errors do: of those that are draws of one
 /// kind, and all of what those weigh that stand apart from them.
@@ -334,14 +333,14 @@ double level_deviation(const std::vector<Place>& near, const std::vector<Place>&
   double mean = 0, squares = 0, w = 0, ww = 0, off = 0;
   for (const Place& one : near) mean += one.offset / n;
   for (const Place& one : near) {
-    const double weight = weight_of(one, alike);
+    const double weight = one.weight(alike);
     squares += (one.offset - mean) * (one.offset - mean);
     w += weight;
     ww += weight * weight;
   }
   for (const Place& one : apart) {
-    w += weight_of(one, alike);
-    off += weight_of(one, alike) * std::abs(one.offset - mean);
+    w += one.weight(alike);
+    off += one.weight(alike) * std::abs(one.offset - mean);
   }
   return std::hypot(std::sqrt(squares / (n - 1) * ww) * student_quantile(0.975, n - 1) / kNormal95, off) / w;
 }
@@ -422,9 +421,11 @@ std::optional<ReadingMeter::Level> ReadingMeter::level(const std::vector<TakenOu
     if (!apart[i]) alike.push_back(places[i]);
     if (apart[i] && !taken && !all) others.push_back(places[i]);
   }
-  out.sd = level_deviation(alike, others, all);
-  out.about = input;
-  out.gain_sd = common_gain_sd(places, taken_out);
+  out.common.level_sd = level_deviation(alike, others, all);
+  if (const double sd = common_gain_sd(places, taken_out); sd > 0) {
+    out.common.gain_sd = sd;
+    out.common.gain_about = input;
+  }
   return out;
 }
 
@@ -544,20 +545,23 @@ std::optional<ReadingMeter::Line> ReadingMeter::gain_line(std::size_t sensor) co
   return out;
 }
 
-std::vector<ReadingMeter::GainDrift> ReadingMeter::gain_drifts(double false_alarm) const {
+std::vector<ReadingMeter::GainDrift> ReadingMeter::gain_drifts(double false_alarm, const Readings* learnt) const {
   std::vector<std::optional<Line>> lines;
-  for (std::size_t i = 0; i < n_; ++i) lines.push_back(gain_line(i));
+  for (std::size_t i = 0; i < n_; ++i)
+    lines.push_back(learnt != nullptr && !(*learnt)[i] ? std::nullopt : gain_line(i));
+  const auto moved = [&](std::size_t i) {
+    return learnt == nullptr ? lines[i]->change() : std::max(lines[i]->change(), lines[i]->away((*learnt)[i]->gain));
+  };
   std::vector<GainDrift> out;
   for (std::size_t i = 0; i < n_; ++i) {
     std::vector<double> others;
     for (std::size_t j = 0; j < n_; ++j)
-      if (j != i && lines[j]) others.push_back(lines[j]->change());
+      if (j != i && lines[j]) others.push_back(moved(j));
     if (!lines[i] || others.size() < 2) continue;
-    const Line& line = *lines[i];
     const double rare = false_alarm / (2 * static_cast<double>(n_ * kParts));
-    const double chance = student_quantile(1 - rare, static_cast<double>(blocks_.size())) * line.error;
-    if (line.change() > std::max({kLeastDrift, kBeyondUsual * median_in_place(others), chance}))
-      out.push_back({i, line.from, line.to});
+    const double chance = student_quantile(1 - rare, static_cast<double>(blocks_.size())) * lines[i]->error;
+    if (moved(i) > std::max({kLeastDrift, kBeyondUsual * median_in_place(others), chance}))
+      out.push_back({i, lines[i]->from, lines[i]->to});
   }
   return out;
 }

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "libchar/replay/common_errors.hpp"
 #include "libchar/replay/fusion_file.hpp"
 
 namespace libchar::detail {
@@ -48,9 +49,7 @@ class ReadingMeter {
   struct Level {
     std::vector<double> offsets;  ///< 0: not worth taking out
     bool matters = false;         ///< one of them is not
-    double sd = 0;                ///< 1.96 of it hold 95 % of the level
-    double about = 0;             ///< the middle input, of which it is
-    double gain_sd = 0;           ///< the same of the gain that all share, by what those of the sensors differ
+    CommonErrors common;          ///< 1.96 of a deviation hold 95 %; the level is that of the middle input
   };
   std::optional<Level> level(const std::vector<TakenOut>& taken_out) const;
 
@@ -84,12 +83,13 @@ class ReadingMeter {
   std::vector<double> repeated() const;
 
   /// A gain that moves from one end of the log to the other (a line or a step through those of eight parts, each
-  /// from what is left of the means of its blocks), by more than chance does in a sound array in so many.
+  /// from what is left of the means of its blocks), by more than chance does in a sound array in so many. `learnt`: or
+  /// is another than there.
   struct GainDrift {
     std::size_t sensor = 0;
     double from = 0, to = 0;  ///< beyond one
   };
-  std::vector<GainDrift> gain_drifts(double false_alarm) const;
+  std::vector<GainDrift> gain_drifts(double false_alarm, const Readings* learnt = nullptr) const;
 
   /// A sensor that is late beside the median u: with m = (u[k+1] - u[k-1]) / 2, what is left of it is e = -d m.
   struct Delay {
@@ -118,6 +118,7 @@ class ReadingMeter {
   struct Line {
     double from = 0, to = 0, error = 0;  // at both ends; of their difference
     double change() const { return std::abs(to - from); }
+    double away(double gain) const { return std::max(std::abs(to - gain), std::abs(from - gain)); }
   };
   struct Fit {
     double mean = 0, rms = 0;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libchar/core/process/progress.hpp"
+#include "libchar/replay/common_errors.hpp"
 #include "libchar/replay/detail/align/instants.hpp"
 
 namespace libchar {
@@ -39,9 +40,7 @@ class RestMeter {
 /// What was found out about each sensor before the plan.
 struct SensorKnowledge {
   std::vector<double> offsets;
-  std::optional<double> level_sd;          ///< of the level, where no reference says it
-  std::optional<double> gain_sd;           ///< the same of the gain that all sensors share
-  double gain_about = 0;                   ///< input at which it does not matter
+  detail::CommonErrors common;
   std::vector<double> noise_variances;     ///< NaN: not known
   std::vector<std::string> noise_sources;  ///< "the scene", "the models", "rest", ""
 };

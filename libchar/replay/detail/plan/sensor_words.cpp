@@ -80,6 +80,15 @@ struct Sensors {
   }
 };
 
+/// By the shares of its blocks with outliers and of those of the middle sensor.
+bool more_outliers(double share, double usual) {
+  return share > std::max(usual + kLeastOutliers, kOutliersOver * usual);
+}
+
+std::string outliers_text(double share) {
+  return fmt::format("outliers in {} of its stretches", percent_text(share, 2));
+}
+
 /// What sensors read on average: what is judged, and what is said of it.
 struct Throughout {
   ReadingMeter::Readings steady;
@@ -117,8 +126,7 @@ struct Throughout {
       if (reference) continue;
       if (!sure && slowly[i] > 1)  // sound sensors drift, and are late, unlike each other
         out[i].push_back(fmt::format("scatter {} times that from sample to sample", brief_text(*slow[i], 2)));
-      if (outliers[i] > std::max(outlying + kLeastOutliers, kOutliersOver * outlying))
-        out[i].push_back(fmt::format("outliers in {} of its stretches", percent_text(outliers[i], 2)));
+      if (more_outliers(outliers[i], outlying)) out[i].push_back(outliers_text(outliers[i]));
       if (repeated[i] > repeats + kLeastRepeated)
         out[i].push_back(fmt::format("{} of its samples repeat the one before", percent_text(repeated[i], 2)));
     }
@@ -264,12 +272,26 @@ bool doubts_sensors(const Finding& finding) {
   return std::find(std::begin(kCodes), std::end(kCodes), finding.code) != std::end(kCodes);
 }
 
-void warn_of_changes(const std::vector<ReadingMeter::Change>& changes, const std::vector<std::string>& names,
-                     const std::vector<std::string>& units, const Clock& clock, Findings& warnings) {
+void warn_of_changes(const ReadingMeter& meter, const ReadingMeter::Readings& learnt,
+                     const std::vector<std::string>& names, const std::vector<std::string>& units, const Clock& clock,
+                     Findings& warnings) {
+  const Sensors of{names, units};
+  std::vector<Said> changed = changes_said(meter.changes(learnt), of, clock), gains, spiky;
+  for (const ReadingMeter::GainDrift& one : meter.gain_drifts(kFalseAlarm, &learnt)) {
+    const std::string from = brief_text(1 + one.from, 3), to = brief_text(1 + one.to, 3);
+    gains.push_back(
+        {of.name(one.sensor), fmt::format("its gain is {}{}, where this was learnt {}", from,
+                                          from == to ? "" : " to " + to, brief_text(1 + learnt[one.sensor]->gain, 3))});
+  }
+  add_unsaid(gains, changed, {});
   add(warnings, "sensor_changed",
       "sensors read otherwise, relative to the others, than where this was learnt: weights and standard deviations of "
       "there do not fit",
-      changes_said(changes, {names, units}, clock));
+      changed);
+  const std::vector<double> outliers = meter.with_outliers(learnt);
+  for (std::size_t i = 0; i < outliers.size(); ++i)
+    if (more_outliers(outliers[i], middle_of(outliers))) spiky.push_back({of.name(i), outliers_text(outliers[i])});
+  add(warnings, "sensor_apart", "sensors have more outliers than the others", spiky);
 }
 
 }  // namespace libchar::detail

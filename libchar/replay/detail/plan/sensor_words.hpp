@@ -36,7 +36,9 @@ void warn_of_delays(const std::vector<ReadingMeter::Delay>& delays, const std::v
 /// A finding that says of sensors that they fail, stand apart, repeat each other, or have no samples.
 bool doubts_sensors(const Finding& finding);
 
-void warn_of_changes(const std::vector<ReadingMeter::Change>& changes, const std::vector<std::string>& names,
-                     const std::vector<std::string>& units, const Clock& clock, Findings& warnings);
+/// Of another log than that of `learnt`.
+void warn_of_changes(const ReadingMeter& meter, const ReadingMeter::Readings& learnt,
+                     const std::vector<std::string>& names, const std::vector<std::string>& units, const Clock& clock,
+                     Findings& warnings);
 
 }  // namespace libchar::detail

@@ -452,6 +452,8 @@ const Fields<ReplayReport>& ReplayReport::fields() {
       field_or_null<&T::best_sensor>("best_sensor"),
       field<&T::best_over_sensor>("best_over_sensor_ci95"),
       field<&T::level_sd>("level_sd"),
+      field<&T::gain_sd>("gain_sd"),
+      field<&T::gain_about>("gain_about"),
       field<&T::offsets_decide>("offsets_decide"),
       field<&T::chosen_as_robust>("chosen_as_robust"),
       field<&T::ranked>("ranked"),
