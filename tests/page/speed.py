@@ -49,7 +49,8 @@ def row(arguments, folder, log, words):
             seconds.append(take(more[0], folder, *more[1:]))
         rounds.append(seconds)
     own, whole, beside = (min(seconds) for seconds in zip(*rounds))
-    print(f"{log}\t{words[0]}\t{own:.2f}\t{whole:.2f}\t{beside:.2f}\t{whole / own:.2f}\t{beside / own:.2f}", flush=True)
+    numbers = (own, whole, beside, whole / own, beside / own)
+    print(log, words[0], *(f"{number:.2f}" for number in numbers), sep="\t", flush=True)
     return beside / own
 
 
