@@ -69,8 +69,8 @@ def main():
         with tempfile.TemporaryDirectory(dir=file.resolve().parent) as name:
             folder = pathlib.Path(name)
             os.link(file.resolve(), folder / file.name)  # NODEFS sees what is below the folder
-            ratios.append(row(arguments, folder, file.name, ["inspect", file.name, *options, "--json", "--preview"]))
-            ratios.append(row(arguments, folder, file.name, ["characterize", file.name, *options, "-q", "-o", "report"]))
+            for verb, *more in (("inspect", "--json", "--preview"), ("characterize", "-q", "-o", "report")):
+                ratios.append(row(arguments, folder, file.name, [verb, file.name, *options, *more]))
     print(f"the largest: {max(ratios):.2f}; the aim is {AIM}")
 
 
