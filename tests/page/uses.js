@@ -1,6 +1,6 @@
 // The uses of the page, each as a person drives it: files in, buttons pressed, what comes of it looked at.
 "use strict";
-const fs = require("fs"), path = require("path");
+const crypto = require("crypto"), fs = require("fs"), path = require("path");
 const { ROOT, LIMIT_MS, check, opened, state, dropped } = require("./support.js");
 const { bagOf } = require("./bag.js");
 
@@ -333,6 +333,19 @@ async function cancelled(one) {
   check(await one.drop(path.join(ROOT, "fixtures/packed/table.csv.gz")) === "done", "it goes on after that");
 }
 
+/** The digest of a large file, which a second worker takes, is the one that the report states. */
+async function digested(one) {
+  const log = device(one.folder, "large.csv", 0.1, 12), rows = fs.readFileSync(log, "utf8").trim().split("\n");
+  const more = Array.from({ length: 1000000 }, (_, i) => `${(i + 20000) / 100},${rows[1 + i % 20000].split(",")[1]}`);
+  fs.appendFileSync(log, `${more.join("\n")}\n`);
+  check(await one.drop(log) === "done", "a large log is characterized");
+  const file = await one.saved(() => one.tab.locator("#files a", { hasText: "report.json" }).first().click(), "report.json");
+  const wanted = crypto.createHash("sha256").update(fs.readFileSync(log)).digest("hex");
+  check(fs.readFileSync(file, "utf8").includes(wanted), "the digest of the log is in the report");
+  const taken = await one.tab.evaluate(async () => Promise.all(pool.digests.values()));
+  check(taken.map(({ digest }) => digest).join() === wanted, `a second worker took the digest: ${JSON.stringify(taken)}`);
+}
+
 /** Nothing but keys: the file's channel is looked at, a use is chosen and run. */
 async function byKeys(one) {
   await one.drop(path.join(ROOT, "fixtures/imu_at_rest.csv"));
@@ -348,7 +361,7 @@ async function byKeys(one) {
   await one.ended("by keys");
 }
 
-const SCENES = { oneLog, bagToKalibr, printed, severalLogs, anythingCompared, toldHow, asked, anArray, hardNames, mended, extremes, aModel, aReport, aCurve, cancelled, byKeys };
+const SCENES = { oneLog, bagToKalibr, printed, severalLogs, anythingCompared, toldHow, asked, anArray, hardNames, mended, extremes, aModel, aReport, aCurve, cancelled, digested, byKeys };
 
 async function uses(browser, page, folder, only) {
   for (const [name, scene] of Object.entries(SCENES)) if (!only || only === name) {

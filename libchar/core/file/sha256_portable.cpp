@@ -10,7 +10,20 @@
 #include <cstdint>
 #include <cstring>
 
+#include "libchar/core/file/known_digest.hpp"
 #include "libchar/core/file/sha256.hpp"
+
+#if defined(__EMSCRIPTEN__)
+#include <emscripten.h>
+#include <stdlib.h>
+
+// clang-format off: this is JavaScript
+EM_JS(char*, page_known_digest, (const char* path), {
+  const digest = Module.digests && Module.digests[UTF8ToString(path)];
+  return digest ? allocateUTF8(digest) : 0;
+});
+// clang-format on
+#endif
 
 namespace libchar {
 namespace {
@@ -141,5 +154,16 @@ std::string Sha256::finish() {
   for (const std::uint32_t word : s.hash) digits += fmt::format("{:08x}", word);
   return digits;
 }
+
+#if defined(__EMSCRIPTEN__)
+std::string detail::known_digest(const std::string& path) {
+  char* const text = page_known_digest(path.c_str());
+  std::string digest = text != nullptr ? text : "";
+  free(text);
+  return digest;
+}
+#else
+std::string detail::known_digest(const std::string&) { return ""; }
+#endif
 
 }  // namespace libchar

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "libchar/core/file/known_digest.hpp"
 #include "libchar/core/file/sha256.hpp"
 #include "libchar/core/parallel/beside.hpp"
 #include "libchar/core/refusal.hpp"
@@ -34,6 +35,8 @@ FileHash::~FileHash() {
 
 void FileHash::start() {
   if (!wanted_ || hashing_.valid() || !digest_.empty()) return;
+  if (files_.size() == 1) digest_ = detail::known_digest(files_[0]->path());
+  if (!digest_.empty()) return;
   hashing_ = parallel::beside([this] { return digest_of_files(); });
 }
 

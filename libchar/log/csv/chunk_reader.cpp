@@ -10,6 +10,7 @@
 #include <cstring>
 #include <utility>
 
+#include "libchar/core/file/known_digest.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/log/csv/rows/rows.hpp"
@@ -43,7 +44,8 @@ std::size_t last_row_end(std::string_view text, char delimiter) {
 
 ChunkReader::ChunkReader(std::string path, std::size_t block_bytes, bool hash)
     : path_(std::move(path)), block_(std::max<std::size_t>(1, block_bytes)) {
-  if (hash) sha_.emplace();
+  if (hash) digest_.known = detail::known_digest(path_);
+  if (hash && digest_.known.empty()) digest_.sha.emplace();
   if (path_ == "-") {
     descriptor_ = ::dup(STDIN_FILENO);
     if (descriptor_ < 0)
@@ -116,7 +118,7 @@ std::size_t ChunkReader::read_stored(char* to, std::size_t n) {
   std::memcpy(to, front_.data(), done);
   front_.erase(0, done);
   if (done == 0) done = read_file(to, n);
-  if (sha_) sha_->update({to, done});
+  if (digest_.sha) digest_.sha->update({to, done});
   stored_ += done;
   return done;
 }
@@ -159,7 +161,7 @@ std::string_view ChunkReader::head() {
     char one = 0;
     if (read_some(&one, 1) == 1) head_.push_back(one);
   }
-  if (sha_ && !packed()) sha_->update(head_);
+  if (digest_.sha && !packed()) digest_.sha->update(head_);
   return head_;
 }
 
@@ -238,24 +240,24 @@ void ChunkReader::drop_cut_line(RawChunk& chunk) {
 }
 
 void ChunkReader::hash(const RawChunk& chunk) {
-  if (!sha_ || packed()) return;
-  sha_->update({chunk.bytes.data() + chunk.hash_from, chunk.hash_to - chunk.hash_from});
+  if (!digest_.sha || packed()) return;
+  digest_.sha->update({chunk.bytes.data() + chunk.hash_from, chunk.hash_to - chunk.hash_from});
   static constexpr char kZeros[4096] = {};
   for (std::uint64_t left = chunk.nuls_after; left > 0;) {
     const std::size_t n = std::min(detail::in_memory(left), sizeof kZeros);
-    sha_->update({kZeros, n});
+    digest_.sha->update({kZeros, n});
     left -= n;
   }
 }
 
 std::string ChunkReader::finish_hash() {
-  if (!sha_) return "";
+  if (!digest_.sha) return digest_.known;
   if (!(packed() ? file_ended_ : ended_) && !regular_) return "";
   std::vector<char> buffer(std::size_t{1} << 18U);
   while (packed() && read_stored(buffer.data(), buffer.size()) > 0) {
   }
-  while (!packed() && !ended_) sha_->update({buffer.data(), read_some(buffer.data(), buffer.size())});
-  return sha_->finish();
+  while (!packed() && !ended_) digest_.sha->update({buffer.data(), read_some(buffer.data(), buffer.size())});
+  return digest_.sha->finish();
 }
 
 }  // namespace libchar::csv

@@ -87,10 +87,13 @@ class ChunkReader {
   bool regular_ = false, ended_ = false, done_ = false;
   std::uint64_t size_ = 0, read_ = 0, offset_ = 0, nuls_ = 0, cut_bytes_ = 0;
   std::string head_;
-  std::size_t taken_ = 0;      // of the head
-  std::vector<char> carry_;    // an unfinished line
-  std::optional<Sha256> sha_;  // none: not asked for
-  std::string front_;          // bytes that were looked at and not yet given out
+  std::size_t taken_ = 0;    // of the head
+  std::vector<char> carry_;  // an unfinished line
+  struct {
+    std::string known;          // somebody else took it
+    std::optional<Sha256> sha;  // none: not asked for, or known
+  } digest_;
+  std::string front_;  // bytes that were looked at and not yet given out
   bool file_ended_ = false;
   std::atomic<std::uint64_t> stored_ = 0;
   std::unique_ptr<Unpacker> unpacker_;

@@ -1,5 +1,6 @@
 # The program as a module that a worker or node makes instances of: createProgram({…}) (tools/page/script/worker.js).
 set(LIBCHAR_PAGE_LINK -O3 CACHE STRING "-O1 links in seconds: for work on the page")
+target_sources(sensorchar PRIVATE "${PROJECT_SOURCE_DIR}/tools/page/digest.cpp")
 target_link_options(
   sensorchar
   PRIVATE ${LIBCHAR_PAGE_LINK}
@@ -13,7 +14,7 @@ target_link_options(
           -sMAXIMUM_MEMORY=4GB
           -sTOTAL_STACK=8MB
           -sFORCE_FILESYSTEM=1
-          -sEXPORTED_RUNTIME_METHODS=FS,callMain
+          -sEXPORTED_RUNTIME_METHODS=FS,callMain,ccall
           -lworkerfs.js
           -lnodefs.js)
 # Of an inline function that many objects have, the first one stays. Documents and verbs are compiled for size and use Eigen too: behind what is

@@ -73,7 +73,9 @@ function start(words, what, made = []) {
   ++running;
   setState("working", `${what} …`);
   const logs = [...parts(bench.items), ...made.map(({ name, blob }) => ({ name, file: blob }))];
-  return pool.run({ words, logs, progress: text => setState("working", text || `${what} …`) }).finally(() => --running);
+  const named = words[0] === "inspect" ? [] : bench.items.filter(({ name }) => words.includes(name));
+  const progress = text => setState("working", text || `${what} …`);
+  return pool.digestsOf(parts(named)).then(digests => pool.run({ words, logs, digests, progress })).finally(() => --running);
 }
 
 /** One item, looked at by the program. */
@@ -143,9 +145,17 @@ function opened(item) {
   return command([use.words(bench, use), ...(item.about ? [figureWords(bench, use.source)] : [])], { needed: 1 });
 }
 
+/** Has a second worker take the digest of a large file. Where there are several files, each has a worker, and no core is left. */
+function digestBeside({ parts: [log, ...more] }) {
+  const worth = 16e6; // below, a worker takes longer to start
+  if (more.length === 0 && log.file.size > worth) pool.digest(log);
+}
+
 /** Looks at items again, each beside the others, and draws; a single recording of which all is known is characterized at once. */
 async function look(items) {
   showError("");
+  const recordings = () => bench.items.filter(({ kind }) => kind === "log");
+  if (recordings().length === 1) digestBeside(recordings()[0]);
   try {
     await Promise.all(items.filter(({ kind }) => kind === "log").map(async item => {
       await inspect(item);
@@ -155,8 +165,7 @@ async function look(items) {
     return stopped(error);
   }
   draw();
-  const [only] = bench.items.filter(({ kind }) => kind === "log");
-  if (bench.logs.length === 1 && bench.items.filter(({ kind }) => kind === "log").length === 1 && only.recording.rate_hz) {
+  if (bench.logs.length === 1 && recordings().length === 1 && bench.logs[0].recording.rate_hz) {
     [use, picked] = [USES[0], false];
     drawUses();
     return run();
@@ -388,6 +397,14 @@ async function makePool() {
   return new Pool(texts.worker, module);
 }
 
+/** A short recording and what a drop does with it. */
+function rehearsal() {
+  let x = 1; // white noise
+  const rows = Array.from({ length: 4000 }, (_, i) => `${i / 100},${((x = (Math.imul(1664525, x) + 1013904223) >>> 0) / 2 ** 32).toFixed(4)}`);
+  const bytes = new TextEncoder().encode(`t,x [deg/s]\n${rows.join("\n")}\n`);
+  return { words: ["characterize", "rehearsal.csv", "-o", "rehearsal"], files: [{ name: "rehearsal.csv", bytes }] };
+}
+
 async function begin() {
   listen();
   try {
@@ -398,7 +415,7 @@ async function begin() {
   }
   byId("version").textContent = USAGE.program_version.replace(/^sensorchar /, "");
   setState("ready", "Ready.");
-  pool.warm();
+  pool.warm(rehearsal());
 }
 
 begin();

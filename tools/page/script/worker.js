@@ -1,8 +1,10 @@
 // Runs commands of the program in a worker: an instance for each, so that nothing of one is left for the next.
 //
 // In:  {module}: the compiled program, once
-//      {id, words, logs: [{name, file}], files: [{name, bytes}]}: a command; logs are read through their handles, never copied
-// Out: {id, progress} while it works, then {id, code, out, err, files: [{name, bytes}]}, or {id, failed}
+//      {id, words, logs: [{name, file}], files: [{name, bytes}], digests: {name: digest}}: a command; logs are read through their handles, never
+//      copied; digests of logs need not be taken again
+//      {id, digested: {name, file}}: takes the digest of a log
+// Out: {id, progress} while it works, then {id, code, out, err, files: [{name, bytes}]}, or {id, digest}, or {id, failed}
 "use strict";
 const FOLDER = "/work", NOTHING = "/none";
 let compiled = null;
@@ -66,20 +68,28 @@ function written(FS, before, folder = FOLDER) {
   return found;
 }
 
-async function run({ id, words, logs, files }) {
+const instance = settings => createProgram({
+  ...settings,
+  noInitialRun: true,
+  instantiateWasm(imports, take) {
+    WebAssembly.instantiate(compiled, imports).then(made => take(made, compiled));
+    return {};
+  },
+});
+
+async function run({ id, words, logs, files, digests }) {
   const out = new Said(), err = new Said(text => postMessage({ id, progress: shown(text).split("\n").pop() }));
-  const program = await createProgram({
-    noInitialRun: true,
-    said: (stream, byte) => (stream === 1 ? out : err).push(byte),
-    instantiateWasm(imports, take) {
-      WebAssembly.instantiate(compiled, imports).then(instance => take(instance, compiled));
-      return {};
-    },
-  });
+  const program = await instance({ digests, said: (stream, byte) => (stream === 1 ? out : err).push(byte) });
   mount(program, logs, files);
   const before = new Map(files.map(({ name }) => [`${FOLDER}/${name}`, program.FS.lookupPath(`${FOLDER}/${name}`).node.contents]));
   const code = program.callMain(words);
   return { id, code, out: out.text(), err: shown(err.text()), files: written(program.FS, before), heap: program.HEAPU8.length };
+}
+
+async function digest({ id, digested }) {
+  const program = await instance({ said: () => {} });
+  mount(program, [digested], []);
+  return { id, files: [], digest: program.ccall("page_digest", "string", ["string"], [digested.name]) };
 }
 
 onmessage = async ({ data }) => {
@@ -88,7 +98,7 @@ onmessage = async ({ data }) => {
     return;
   }
   try {
-    const result = await run(data);
+    const result = await (data.digested ? digest(data) : run(data));
     postMessage(result, result.files.map(file => file.bytes.buffer));
   } catch (error) {
     postMessage({ id: data.id, failed: String(error && error.message || error) });
