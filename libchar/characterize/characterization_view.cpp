@@ -11,6 +11,7 @@
 #include "libchar/characterize/judgement.hpp"
 #include "libchar/characterize/limits.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/shown.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/fit/curve/shaped_curves.hpp"
 #include "libchar/fit/signs/rounding.hpp"
@@ -18,11 +19,6 @@
 
 namespace libchar {
 namespace {
-
-std::string usual_spelling(const std::string& unit) {
-  const auto known = find_unit(unit);
-  return known && known->symbol != "1" ? std::string(known->symbol) : unit;
-}
 
 ModelCurve allan_model(const NoiseFit& fit, const AllanCurve& curve) {
   ModelCurve out;
@@ -139,9 +135,9 @@ struct Factors {
 ChannelView channel_view(const ChannelResult& channel, double rate_hz, Factors& factors) {
   ChannelView out;
   out.result = &channel;
-  out.unit = usual_spelling(channel.channel.unit);
+  out.unit = detail::usual_unit(channel.channel.unit);
   out.shown_unit = shown_unit(out.unit);
-  out.trace_unit = shown_unit(usual_spelling(channel.trace_unit));
+  out.trace_unit = shown_unit(detail::usual_unit(channel.trace_unit));
   out.judgement = judge(channel);
   out.summary = detail::summary_sentence(channel, out.judgement, out.unit);
   out.marks = trace_marks(channel, out.shown_unit);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "libchar/characterize/compare/characterization_comparison.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/term_cells.hpp"
 #include "libchar/core/units.hpp"
@@ -88,9 +89,7 @@ std::size_t LimitReport::count(LimitStatus status) const {
 }
 
 LimitStatus judge_limit(const Coefficient& measured, double most) {
-  const bool relied_on = measured.status == Status::detected || measured.status == Status::not_detected ||
-                         measured.status == Status::given;
-  if (!relied_on) return LimitStatus::not_decided;
+  if (!detail::relied_on(measured)) return LimitStatus::not_decided;
   if (!measured.value)
     return measured.upper95 && *measured.upper95 <= most ? LimitStatus::pass : LimitStatus::not_decided;
   if (measured.ci95.high <= most) return LimitStatus::pass;

@@ -67,10 +67,6 @@ void read_document(FigureSource& out, const Document& document, const std::strin
   if (map.has("verification")) add_simulated(out, map.map("verification"));
 }
 
-bool ends_like_a_document(const std::string& path) {
-  return path.ends_with(".json") || path.ends_with(".yaml") || path.ends_with(".yml");
-}
-
 void refuse_empty(const FigureSource& source) {
   if (source.replay || !source.curves.empty() || !source.residuals.empty() || !source.traces.empty()) return;
   throw input_error("E0975", source.file).says("holds no curve that could be drawn").hint(kReadable);
@@ -105,7 +101,7 @@ FigureSource read_figure_source(const std::string& path) {
   FigureSource out;
   out.file = report_file(path);
   out.name = detail::document_name(out.file);
-  if (!ends_like_a_document(out.file)) {
+  if (!detail::ends_like_a_document(out.file)) {
     read_table(out, out.file);
     refuse_empty(out);
     return out;

@@ -23,6 +23,16 @@
 namespace libchar {
 namespace {
 
+constexpr std::size_t kDigitsOfSum = 64;
+
+/// 64 hexadecimal digits in lower case; nothing for any other text.
+std::optional<std::string> sha256_digits(std::string_view text) {
+  std::string digits = ascii_lower(text);
+  if (digits.size() != kDigitsOfSum || digits.find_first_not_of("0123456789abcdef") != std::string::npos)
+    return std::nullopt;
+  return digits;
+}
+
 // A small table of texts: a CSV file that people write by hand or in a spreadsheet.
 
 struct TableRow {
@@ -377,7 +387,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kDigitsOfSum = 64;
 constexpr std::size_t kMostSums = std::size_t{1} << 30U;
 
 struct SumLine {
@@ -436,13 +445,6 @@ void state(const std::string& log, const StatedDigest& one, StatedDigests& out) 
 }
 
 }  // namespace
-
-std::optional<std::string> sha256_digits(std::string_view text) {
-  std::string digits = ascii_lower(text);
-  if (digits.size() != kDigitsOfSum || digits.find_first_not_of("0123456789abcdef") != std::string::npos)
-    return std::nullopt;
-  return digits;
-}
 
 StatedDigests parse_sums(std::string_view text, const std::string& path) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);

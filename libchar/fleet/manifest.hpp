@@ -56,9 +56,6 @@ struct StatedDigest {
 /// Of each log, by its absolute path.
 using StatedDigests = std::map<std::string, StatedDigest>;
 
-/// 64 hexadecimal digits in lower case; nothing for any other text.
-std::optional<std::string> sha256_digits(std::string_view text);
-
 /// Lines "DIGEST  PATH", "DIGEST *PATH" or "SHA256 (PATH) = DIGEST"; paths are relative to the
 /// file's folder; empty lines and those that begin with # are left out. Throws Error(input) with
 /// the place of any other line, and for two digests of one path.

@@ -12,6 +12,10 @@
 #include "libchar/scene/scene_file.hpp"
 
 namespace libchar {
+std::string output_unit(const SensorModel& model) {
+  return model.sensitivity.unit.empty() ? model.unit : model.sensitivity.unit;
+}
+
 namespace {
 
 // The weights of the inputs that the reference names, out of those of all true inputs.
@@ -22,6 +26,21 @@ std::vector<double> weights_of(const SceneReference& reference, const std::vecto
   for (const std::string& channel : reference.channels)
     row.push_back(h[std::find(names.begin(), names.end(), channel) - names.begin()]);
   return row;
+}
+
+// What is in the log: sensors, then true inputs, then temperature.
+LogInfo log_info(const ArraySimulation& simulation, const SimulatedRecording& recording) {
+  LogInfo info;
+  info.file = recording.file;
+  info.samples = info.rows = simulation.samples;
+  info.time.rate_hz = simulation.rate_hz;
+  for (const SimulatedSensor& sensor : simulation.sensors)
+    info.channels.push_back({sensor.name, output_unit(sensor.model), false});
+  if (!recording.truth) return info;
+  for (const std::string& name : simulation.truth_names)
+    info.channels.push_back({name, simulation.truth.size() == 1 ? simulation.sensors[0].model.unit : "", false});
+  if (simulation.temperature) info.channels.push_back({"temperature", "degC", false});
+  return info;
 }
 
 // What a log of this format does not say of itself.
@@ -58,26 +77,8 @@ SimulatedFrom simulated_from(const ArraySimulation& simulation, const SimulatedR
   return out;
 }
 
-}  // namespace
-
-std::string output_unit(const SensorModel& model) {
-  return model.sensitivity.unit.empty() ? model.unit : model.sensitivity.unit;
-}
-
-LogInfo log_info(const ArraySimulation& simulation, const SimulatedRecording& recording) {
-  LogInfo info;
-  info.file = recording.file;
-  info.samples = info.rows = simulation.samples;
-  info.time.rate_hz = simulation.rate_hz;
-  for (const SimulatedSensor& sensor : simulation.sensors)
-    info.channels.push_back({sensor.name, output_unit(sensor.model), false});
-  if (!recording.truth) return info;
-  for (const std::string& name : simulation.truth_names)
-    info.channels.push_back({name, simulation.truth.size() == 1 ? simulation.sensors[0].model.unit : "", false});
-  if (simulation.temperature) info.channels.push_back({"temperature", "degC", false});
-  return info;
-}
-
+// Channels by name, models inline, the truth as reference. What the scene that was simulated said of its replay
+// (windows, algorithms, levels of noise) is kept from `original`.
 Scene replay_scene(const ArraySimulation& simulation, const SimulatedRecording& recording, const Scene& original) {
   Scene scene;
   scene.learning = original.learning;
@@ -103,8 +104,6 @@ Scene replay_scene(const ArraySimulation& simulation, const SimulatedRecording& 
   scene.simulated = simulated_from(simulation, recording, scene);
   return scene;
 }
-
-namespace {
 
 constexpr std::size_t kRows = std::size_t{1} << 14U;
 

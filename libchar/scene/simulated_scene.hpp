@@ -26,13 +26,6 @@ struct SimulatedRecording {
 /// The unit of a sensor's output.
 std::string output_unit(const SensorModel& model);
 
-/// What is in the log: sensors, then true inputs, then temperature.
-LogInfo log_info(const ArraySimulation& simulation, const SimulatedRecording& recording);
-
-/// Channels by name, models inline, the truth as reference. What the scene that was simulated said
-/// of its replay (windows, algorithms, levels of noise) is kept from `original`.
-Scene replay_scene(const ArraySimulation& simulation, const SimulatedRecording& recording, const Scene& original);
-
 // A log with known truth, and the scene that replays it: one set, written together.
 
 /// What a simulation wrote.

@@ -157,6 +157,8 @@ TEST_CASE("characterize --lot and a fleet of the same logs say the same") {
   REQUIRE(ran.code == 0);
   CHECK_THAT(ran.out, Contains("9 devices. 2 devices are outliers of their kind: ") &&
                           Contains("gx, gy: recorded in deg/s, rad/s, compared in deg/s."));
+  CHECK_THAT(test::slurp(logs.folder / "out/index.html"),
+             Contains("Overlapping Allan deviation, deg/s") && !Contains("deviation, rad/s"));
   std::vector<std::string> plan = {"fleet", "plan", "-o", logs.path("f"), "--no-second-opinion"};
   for (const std::string& name : names) plan.push_back(logs.path(name));
   REQUIRE(test::run(plan).code == 0);

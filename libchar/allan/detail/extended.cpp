@@ -140,15 +140,8 @@ AllanPoint extended_point(const FamilyInput& input, const DeviationRow& row, std
 
 std::vector<AllanPoint> extended_points(const FamilyInput& input, const DeviationRow& row,
                                         const std::vector<std::uint64_t>& factors, std::vector<std::string>& notes) {
-  std::vector<AllanPoint> points(factors.size());
-  std::vector<char> spaced(factors.size());
-  parallel::for_each(0, factors.size(), [&](std::size_t k) {
-    bool one = false;
-    points[k] = extended_point(input, row, detail::in_memory(factors[k]), one);
-    spaced[k] = one ? 1 : 0;
-  });
-  note_stride(static_cast<std::uint64_t>(std::count(spaced.begin(), spaced.end(), 1)), notes);
-  return points;
+  return spaced_points(factors, notes,
+                       [&](std::size_t m, bool& spaced) { return extended_point(input, row, m, spaced); });
 }
 
 }  // namespace libchar

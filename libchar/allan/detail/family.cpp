@@ -67,11 +67,20 @@ std::size_t family_stride(const FamilyInput& input, std::uint64_t m, std::uint64
   return detail::in_memory(std::clamp<std::uint64_t>(wanted, 1, std::max<std::uint64_t>(1, m / 16)));
 }
 
-void note_stride(std::uint64_t points, std::vector<std::string>& notes) {
-  if (points == 0) return;
-  notes.push_back(
-      "at " + std::to_string(points) +
-      " averaging times not every term is used, but one every m/16 samples or more (`full_overlap` takes all)");
+std::vector<AllanPoint> spaced_points(const std::vector<std::uint64_t>& factors, std::vector<std::string>& notes,
+                                      const std::function<AllanPoint(std::size_t m, bool& spaced)>& point_of) {
+  std::vector<AllanPoint> points(factors.size());
+  std::vector<char> spaced(factors.size());
+  parallel::for_each(0, factors.size(), [&](std::size_t k) {
+    bool one = false;
+    points[k] = point_of(detail::in_memory(factors[k]), one);
+    spaced[k] = one ? 1 : 0;
+  });
+  if (const auto count = std::count(spaced.begin(), spaced.end(), 1); count > 0)
+    notes.push_back(
+        "at " + std::to_string(count) +
+        " averaging times not every term is used, but one every m/16 samples or more (`full_overlap` takes all)");
+  return points;
 }
 
 }  // namespace libchar

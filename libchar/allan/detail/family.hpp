@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -65,7 +66,10 @@ AllanPoint family_point(const FamilyInput& input, std::uint64_t m, double tau_s,
 /// Every how manieth start is used, so that `starts` of `work` operations each cost no more than is
 /// allowed: at most m/16, which leaves the degrees of freedom as they are to a hundredth.
 std::size_t family_stride(const FamilyInput& input, std::uint64_t m, std::uint64_t starts, std::uint64_t work);
-void note_stride(std::uint64_t points, std::vector<std::string>& notes);
+
+/// `point_of(m, spaced)` of each factor, with a note of how many of them are `spaced`: do not use every start.
+std::vector<AllanPoint> spaced_points(const std::vector<std::uint64_t>& factors, std::vector<std::string>& notes,
+                                      const std::function<AllanPoint(std::size_t m, bool& spaced)>& point_of);
 
 /// Sum over blocks of `block` term starts in `stretch`: `of_block(first, count)` adds up the starts
 /// first, first + stride …

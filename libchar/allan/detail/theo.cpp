@@ -128,20 +128,12 @@ std::vector<AllanPoint> theo_points(const FamilyInput& input, const DeviationRow
   const std::uint64_t allan_up_to = row.type == DeviationType::theoh ? last_allan_factor(input.rates(stretch)) : 0;
   const bool any_theo = !factors.empty() && factors.back() > allan_up_to;
   const double removal = row.type == DeviationType::theo1 || !any_theo ? 1 : bias_removal(input, stretch, notes);
-  std::vector<AllanPoint> points(factors.size());
-  std::vector<char> spaced(factors.size());
-  parallel::for_each(0, factors.size(), [&](std::size_t k) {
-    if (factors[k] <= allan_up_to) {
-      points[k] = allan_point(input, stretch, detail::in_memory(factors[k]));
-      return;
-    }
-    bool one = false;
-    points[k] = theo1_point(input, stretch, detail::in_memory(factors[k]), one);
-    points[k].deviation *= removal;
-    spaced[k] = one ? 1 : 0;
+  return spaced_points(factors, notes, [&](std::size_t m, bool& spaced) {
+    if (m <= allan_up_to) return allan_point(input, stretch, m);
+    AllanPoint point = theo1_point(input, stretch, m, spaced);
+    point.deviation *= removal;
+    return point;
   });
-  note_stride(static_cast<std::uint64_t>(std::count(spaced.begin(), spaced.end(), 1)), notes);
-  return points;
 }
 
 }  // namespace libchar

@@ -446,16 +446,12 @@ CharacterizationComparison compare_characterizations(std::vector<ReportedCharact
 
 namespace {
 
-bool is_known(const Coefficient& c) {
-  return c.status == Status::detected || c.status == Status::given || c.status == Status::not_detected;
-}
-
 /// Of candidate `i` of a term against the first; empty: it holds.
 std::string growth_failure(const ComparedGroup& group, const ComparedTerm& t, std::size_t i, const GrowthCheck& check) {
   const Coefficient &a = t.values[0], &b = t.values[i];
   const std::string &in_a = group.candidates[0].name, &in_b = group.candidates[i].name;
   const std::string name = group.candidates[i].channels[0] + ": " + check.metric;
-  if (!is_known(b))
+  if (!detail::relied_on(b))
     return fmt::format("{} is {} in {} ({}), and {} knows it", name,
                        b.status == Status::not_fitted ? "not fitted" : "not to be relied on", in_b, name_of(b.status),
                        in_a);
@@ -513,7 +509,7 @@ std::vector<std::string> failures(const CharacterizationComparison& comparison, 
     if (group.of_axes || group.candidates[0].side != 0) continue;
     if (!check.label.empty() && !has_name(group, check.label)) continue;
     for (const ComparedTerm& t : group.terms) {
-      if (kTermNames[static_cast<std::size_t>(t.term)].key != check.metric || !is_known(t.values[0])) continue;
+      if (kTermNames[static_cast<std::size_t>(t.term)].key != check.metric || !detail::relied_on(t.values[0])) continue;
       for (std::size_t i = 1; i < t.values.size(); ++i) {
         ++checked;
         if (std::string sentence = growth_failure(group, t, i, check); !sentence.empty())

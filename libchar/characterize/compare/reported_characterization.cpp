@@ -117,10 +117,6 @@ ReportedCharacterization read_summary(const Document& document, const std::strin
   return out;
 }
 
-bool ends_like_a_document(const std::string& path) {
-  return path.ends_with(".json") || path.ends_with(".yaml") || path.ends_with(".yml");
-}
-
 ReportedCharacterization read_curve_candidate(const std::string& file) {
   ReportedCharacterization out;
   out.file = file;
@@ -137,6 +133,33 @@ ReportedCharacterization read_curve_candidate(const std::string& file) {
       point.deviation = named.curve.root ? named.curve.y[i] : std::sqrt(named.curve.y[i]);
       if (i < named.low95.size()) point.ci95 = {named.low95[i], named.high95[i]};
     }
+  }
+  return out;
+}
+
+/// Models as a characterization: their coefficients and the curves that they imply.
+ReportedCharacterization reported_models(const std::vector<SensorModel>& models, const std::string& path) {
+  ReportedCharacterization out;
+  out.file = path;
+  out.name = detail::document_name(path);
+  out.format = "sensor-model";
+  for (const SensorModel& model : models) {
+    ReportedChannel& channel = channel_of(out, model.channel, model.unit);
+    channel.fitted = true;
+    channel.term = model.noise;
+    // A value that is stated without an interval is taken as it is.
+    for (Coefficient& c : channel.term)
+      if (c.value && !(c.ci95.high > 0)) c.ci95 = {*c.value, *c.value};
+    channel.p = kNone;
+    channel.rate_hz = model.rate_hz;
+    channel.duration_s = model.duration_s;
+    channel.band.whole = true;
+    channel.events = model.deterministic.size();
+    channel.shape = name_of(model.noise_shape.kind);
+    if (model.noise_shape.taps > 0) channel.shape += fmt::format(" of {}", model.noise_shape.taps);
+    channel.curve = sensor_model_curve(model, sensor_model_fit(model)).points;
+    if (out.recording.empty()) out.recording = model.recording.file;
+    add_cautions(out.findings, model.findings, model.channel);
   }
   return out;
 }
@@ -166,30 +189,8 @@ void set_names_apart(std::vector<std::string>& names, const std::vector<std::str
   }
 }
 
-ReportedCharacterization reported_models(const std::vector<SensorModel>& models, const std::string& path) {
-  ReportedCharacterization out;
-  out.file = path;
-  out.name = detail::document_name(path);
-  out.format = "sensor-model";
-  for (const SensorModel& model : models) {
-    ReportedChannel& channel = channel_of(out, model.channel, model.unit);
-    channel.fitted = true;
-    channel.term = model.noise;
-    // A value that is stated without an interval is taken as it is.
-    for (Coefficient& c : channel.term)
-      if (c.value && !(c.ci95.high > 0)) c.ci95 = {*c.value, *c.value};
-    channel.p = kNone;
-    channel.rate_hz = model.rate_hz;
-    channel.duration_s = model.duration_s;
-    channel.band.whole = true;
-    channel.events = model.deterministic.size();
-    channel.shape = name_of(model.noise_shape.kind);
-    if (model.noise_shape.taps > 0) channel.shape += fmt::format(" of {}", model.noise_shape.taps);
-    channel.curve = sensor_model_curve(model, sensor_model_fit(model)).points;
-    if (out.recording.empty()) out.recording = model.recording.file;
-    add_cautions(out.findings, model.findings, model.channel);
-  }
-  return out;
+bool ends_like_a_document(const std::string& path) {
+  return path.ends_with(".json") || path.ends_with(".yaml") || path.ends_with(".yml");
 }
 
 bool is_recording(const std::string& path) {
@@ -240,10 +241,10 @@ ReportedCharacterization parse_characterization_report(std::string_view text, co
 
 ReportedCharacterization read_characterization_report(const std::string& path) {
   const std::string file = report_file(path);
-  if (!ends_like_a_document(file)) return read_curve_candidate(file);
+  if (!detail::ends_like_a_document(file)) return read_curve_candidate(file);
   const std::string text = read_document_text(file);
   const Document document = parse_document(text, file);
-  if (detail::holds_models(document)) return detail::reported_models(read_model_list(file), file);
+  if (detail::holds_models(document)) return reported_models(read_model_list(file), file);
   return read_summary(document, file);
 }
 

@@ -57,9 +57,8 @@ std::string document_name(const std::string& path);
 /// Files of one name in several folders are distinguished by these.
 void set_names_apart(std::vector<std::string>& names, const std::vector<std::string>& files);
 
-/// Models as a characterization: their coefficients and the curves that they imply.
-ReportedCharacterization reported_models(const std::vector<SensorModel>& models, const std::string& path);
-
+/// A report or a model, by its suffix.
+bool ends_like_a_document(const std::string& path);
 /// Whether `path` is neither a document, nor a curve, nor a model: a recording, if it can be read.
 bool is_recording(const std::string& path);
 

@@ -132,8 +132,12 @@ std::string commented(const std::vector<std::string>& lines, std::string_view ma
   return out;
 }
 
+std::string unit_and_origin(const std::string& unit, const std::string& origin) {
+  return origin.empty() ? unit : unit + "; " + origin;
+}
+
 std::string yaml_line(std::string_view key, double value, std::string_view unit, const std::string& origin) {
-  return fmt::format("{}: {}  # {}{}{}\n", key, export_number(value), unit, origin.empty() ? "" : "; ", origin);
+  return fmt::format("{}: {}  # {}\n", key, export_number(value), unit_and_origin(std::string(unit), origin));
 }
 
 std::string row_lines(std::string_view target, const ImuFigures& f, std::string_view indent) {
@@ -158,6 +162,21 @@ std::string axis_origins(const std::array<std::string, 3>& origins) {
   std::string out;
   for (std::size_t i = 0; i < 3; ++i)
     if (!origins[i].empty()) out += fmt::format("{}{} {}", out.empty() ? "" : "; ", "xyz"[i], origins[i]);
+  return out;
+}
+
+RowOfAxes white_of_axes(std::string_view target, const SensorTriad& triad, Absent absent, const ExportOptions& options,
+                        std::vector<std::string>& notes, const RowTimes& times) {
+  const ConsumerRow& row = row_of(target, triad.kind, Term::white);
+  const auto figures = axis_figures(triad, Term::white, absent, options);
+  RowOfAxes out{std::string(row.key), {}, {}};
+  std::array<std::string, 3> origins;
+  for (std::size_t i = 0; i < 3; ++i) {
+    out.values[i] = row_value(row, value_or_zero(figures[i]), times);
+    note_figure(notes, row.key, figures[i]);
+    origins[i] = figures[i].origin;
+  }
+  out.comment = unit_and_origin(file_unit(row), axis_origins(origins));
   return out;
 }
 

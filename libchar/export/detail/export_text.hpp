@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libchar/core/document/json.hpp"
+#include "libchar/export/detail/consumer_rows.hpp"
 #include "libchar/export/detail/export_figures.hpp"
 
 namespace libchar {
@@ -34,6 +35,9 @@ Json head_json(const SensorGroup& group, const ExportOptions& options, std::stri
 /// Every line of `lines` behind `mark` ("# ", "// ", "% ").
 std::string commented(const std::vector<std::string>& lines, std::string_view mark);
 
+/// "UNIT; ORIGIN", or the unit alone.
+std::string unit_and_origin(const std::string& unit, const std::string& origin);
+
 /// "KEY: NUMBER  # UNIT; ORIGIN\n".
 std::string yaml_line(std::string_view key, double value, std::string_view unit, const std::string& origin);
 
@@ -42,6 +46,15 @@ std::string row_lines(std::string_view target, const ImuFigures& figures, std::s
 
 /// What has to be said of three axes: once if it is the same, else axis by axis.
 std::string axis_origins(const std::array<std::string, 3>& origins);
+
+/// The white noise of three axes by the target's row for it; what was replaced or left out is noted under its key.
+struct RowOfAxes {
+  std::string key;
+  std::array<double, 3> values{};
+  std::string comment;  ///< "UNIT; ORIGIN"
+};
+RowOfAxes white_of_axes(std::string_view target, const SensorTriad& triad, Absent absent, const ExportOptions& options,
+                        std::vector<std::string>& notes, const RowTimes& times = {});
 
 /// The bias of three axes as a first-order Gauss-Markov process each, in SI times a factor.
 struct BiasOfAxes {

@@ -13,10 +13,6 @@
 namespace libchar {
 namespace {
 
-std::string with_unit(const std::string& unit, const std::string& origin) {
-  return origin.empty() ? unit : fmt::format("{}; {}", unit, origin);
-}
-
 struct GnssInsSimWriter {
   const ExportOptions& options;
   Export& out;
@@ -26,17 +22,8 @@ struct GnssInsSimWriter {
   }
 
   void white(const SensorTriad& triad, double rate_hz = 0) {
-    const ConsumerRow& row = row_of("gnss-ins-sim", triad.kind, Term::white);
-    const std::string key(row.key);
-    const auto figures = axis_figures(triad, Term::white, Absent::zero, options);
-    std::array<double, 3> values{};
-    std::array<std::string, 3> origins;
-    for (std::size_t i = 0; i < 3; ++i) {
-      values[i] = row_value(row, value_or_zero(figures[i]), {.rate_hz = rate_hz});
-      note_figure(out.notes, key, figures[i]);
-      origins[i] = figures[i].origin;
-    }
-    line(key, values, with_unit(file_unit(row), axis_origins(origins)));
+    const RowOfAxes row = white_of_axes("gnss-ins-sim", triad, Absent::zero, options, out.notes, {.rate_hz = rate_hz});
+    line(row.key, row.values, row.comment);
   }
 
   void bias(const std::string& name, const SensorTriad& triad, double factor, const char* unit) {
@@ -44,7 +31,7 @@ struct GnssInsSimWriter {
     std::array<double, 3> constant{};
     for (std::size_t i = 0; i < 3; ++i) constant[i] = of.model[i]->bias.value * of.to_unit[i];
     line(name + "_b", constant, fmt::format("{}, constant; 0 unless stated", unit));
-    line(name + "_b_stability", of.steady_sd, with_unit(unit, of.origins));
+    line(name + "_b_stability", of.steady_sd, unit_and_origin(unit, of.origins));
     line(name + "_b_corr", of.correlation_s, "s; finite: with inf the bias would be white noise");
   }
 };

@@ -23,16 +23,8 @@ class KfGinsWriter {
       : options_(options), common_s_(common_s), out_(out) {}
 
   void white(const SensorTriad& triad) {
-    const ConsumerRow& row = row_of("kf-gins", triad.kind, Term::white);
-    const auto figures = axis_figures(triad, Term::white, Absent::limit, options_);
-    std::array<double, 3> values{};
-    std::array<std::string, 3> origins;
-    for (std::size_t i = 0; i < 3; ++i) {
-      values[i] = row_value(row, value_or_zero(figures[i]));
-      note_figure(out_.notes, row.key, figures[i]);
-      origins[i] = figures[i].origin;
-    }
-    line(std::string(row.key), values, file_unit(row), axis_origins(origins));
+    const RowOfAxes row = white_of_axes("kf-gins", triad, Absent::limit, options_, out_.notes);
+    line(row.key, row.values, row.comment);
   }
 
   void bias(const std::string& key, const SensorTriad& triad, double factor, const char* unit) {
@@ -47,13 +39,13 @@ class KfGinsWriter {
                                   shortest(rounded(process.correlation_s, 4)));
       if (process.driving == 0) out_.notes.push_back(fmt::format("{} {}: 0 ({})", key, "xyz"[i], process.origin));
     }
-    line(key, values, unit, axis_origins(origins));
+    line(key, values, unit_and_origin(unit, axis_origins(origins)));
   }
 
   void scale(const std::string& key, const SensorTriad& triad) {
     std::array<double, 3> values{};
     for (std::size_t i = 0; i < 3; ++i) values[i] = placed(triad, i).model->scale_factor.spread * kPartsPerMillion;
-    line(key, values, "ppm", "not in a recording at rest: 0 unless the model states a spread");
+    line(key, values, "ppm; not in a recording at rest: 0 unless the model states a spread");
   }
 
   GaussMarkov process_of(const SensorTriad& triad, std::size_t i) const {
@@ -66,10 +58,8 @@ class KfGinsWriter {
     return only_axis(options_) ? representative(triad, options_) : *triad.axis[i];
   }
 
-  void line(const std::string& key, const std::array<double, 3>& values, const std::string& unit,
-            const std::string& origin) {
-    out_.text += fmt::format("  {}: {}  # {}{}\n", key, export_list(values), unit,
-                             origin.empty() ? "" : comment_text("; " + origin));
+  void line(const std::string& key, const std::array<double, 3>& values, const std::string& comment) {
+    out_.text += fmt::format("  {}: {}  # {}\n", key, export_list(values), comment_text(comment));
   }
 
   const ExportOptions& options_;

@@ -24,17 +24,8 @@ struct NavegoWriter {
   }
 
   void white(const SensorTriad& triad) {
-    const ConsumerRow& row = row_of("navego", triad.kind, Term::white);
-    const auto figures = axis_figures(triad, Term::white, Absent::zero, options);
-    std::array<double, 3> values{};
-    std::array<std::string, 3> origins;
-    for (std::size_t i = 0; i < 3; ++i) {
-      values[i] = row_value(row, value_or_zero(figures[i]));
-      note_figure(out.notes, row.key, figures[i]);
-      origins[i] = figures[i].origin;
-    }
-    const std::string origin = axis_origins(origins);
-    line(std::string(row.key), values, file_unit(row) + (origin.empty() ? "" : "; " + origin));
+    const RowOfAxes row = white_of_axes("navego", triad, Absent::zero, options, out.notes);
+    line(row.key, row.values, row.comment);
   }
 
   void bias(const std::string& letter, const SensorTriad& triad, double factor, const char* unit) {

@@ -26,9 +26,9 @@ std::string pegasus_sensor(const SensorTriad& triad, const char* unit, const Exp
   note_figure(out.notes, fmt::format("{} noise_density", triad.kind), white);
   if (bias.driving == 0) out.notes.push_back(fmt::format("{} random_walk: 0 ({})", triad.kind, bias.origin));
   const PlacedModel& placed = representative(triad, options);
-  const std::string origin = white.origin.empty() ? "" : "; " + white.origin;
   return fmt::format("    \"{}\": {{\n", triad.kind) +
-         pegasus_line("noise_density", row_value(row, value_or_zero(white)), file_unit(row) + origin) +
+         pegasus_line("noise_density", row_value(row, value_or_zero(white)),
+                      unit_and_origin(file_unit(row), white.origin)) +
          pegasus_line("random_walk", bias.driving,
                       fmt::format("{}/s/sqrt(Hz), driving density; {}", unit, bias.origin)) +
          pegasus_line("bias_correlation_time", bias.correlation_s, "s") +

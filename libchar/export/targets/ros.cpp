@@ -32,10 +32,10 @@ std::string covariance(const char* sensor, const std::optional<SensorTriad>& tri
     if (figure.limit) note_figure(out.notes, key, figure);
     origins[i] = figure.origin;
   }
-  const std::string comment = axis_origins(origins);
-  return fmt::format("{}: [{}, 0.0, 0.0, 0.0, {}, 0.0, 0.0, 0.0, {}]  # {}, at {} Hz{}{}\n", key,
-                     export_number(variance[0]), export_number(variance[1]), export_number(variance[2]), file_unit(row),
-                     export_number(rate), comment.empty() ? "" : "; ", comment);
+  const std::string unit = fmt::format("{}, at {} Hz", file_unit(row), export_number(rate));
+  return fmt::format("{}: [{}, 0.0, 0.0, 0.0, {}, 0.0, 0.0, 0.0, {}]  # {}\n", key, export_number(variance[0]),
+                     export_number(variance[1]), export_number(variance[2]),
+                     unit_and_origin(unit, axis_origins(origins)));
 }
 
 Export write_ros(const SensorGroup& group, const ExportOptions& options) {

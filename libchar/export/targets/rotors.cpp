@@ -25,7 +25,7 @@ std::string triad_block(const SensorTriad& triad, const char* unit, const Export
   note_figure(out.notes, row.key, white);
   if (bias.driving == 0) out.notes.push_back(name + "RandomWalk: 0 (" + bias.origin + ")");
   std::string text = parameter(std::string(row.key), row_value(row, value_or_zero(white)),
-                               fmt::format("{}{}{}", file_unit(row), white.origin.empty() ? "" : "; ", white.origin));
+                               unit_and_origin(file_unit(row), white.origin));
   const std::string driving = fmt::format("{}/s/sqrt(Hz); {}", unit, bias.origin);
   if (name == "gyroscope")
     text += parameter("gyroscopeBiasRandomWalk", bias.driving, "the key that the code reads; " + driving);

@@ -122,6 +122,22 @@ void set_value_axis(Chart& figure, const std::string& words, const std::string& 
   set_ends(figure.y, y, options.y_range);
 }
 
+Chart chart_over_time(const ShownReplay& replay, const FigureOptions& options) {
+  Chart out;
+  set_time_axis(out, replay, options);
+  add_run_marks(out, replay);
+  return out;
+}
+
+/// The method's signal over those that are there, on an axis that holds what of all of them is shown.
+void add_estimate(Chart& figure, const Timeline& track, const std::string& words, const ShownReplay& replay,
+                  const FigureOptions& options) {
+  figure.series.push_back(signal_series(method_of(replay), track, replay, kEstimateLook));
+  Extent y(false);
+  for (const FigureSeries& series : figure.series) take_series(y, series, figure.x);
+  set_value_axis(figure, words, replay.unit, y, options, 0.06);
+}
+
 }  // namespace
 
 Chart timeline_figure(std::span<const FigureSource> sources, const FigureOptions& asked) {
@@ -130,16 +146,11 @@ Chart timeline_figure(std::span<const FigureSource> sources, const FigureOptions
   const FigureOptions options = with_readable_stretch(replay, asked);
   const ReplayReport::Stretch& run = run_shown(replay, options);
   const InputTracks& input = of_input(run.inputs, replay);
-  Chart out;
-  set_time_axis(out, replay, options);
-  add_run_marks(out, replay);
+  Chart out = chart_over_time(replay, options);
   if (!input.reference.empty())
     out.series.push_back(signal_series("reference", input.reference, replay, kReferenceLook));
   add_best_sensor(out, run.sensor, replay);
-  out.series.push_back(signal_series(method_of(replay), input.estimate, replay, kEstimateLook));
-  Extent y(false);
-  for (const FigureSeries& series : out.series) take_series(y, series, out.x);
-  set_value_axis(out, name_of_input(replay), replay.unit, y, options, 0.06);
+  add_estimate(out, input.estimate, name_of_input(replay), replay, options);
   out.about = "The run: reference, estimate and best sensor";
   return out;
 }
@@ -150,23 +161,16 @@ Chart error_figure(std::span<const FigureSource> sources, const FigureOptions& o
   const ReplayReport::Stretch& run = run_shown(replay, options);
   const Timeline& error = of_input(run.inputs, replay).error;
   if (error.empty()) throw kind_refusal(sources[0], "error").says("without a reference there is no error over the run");
-  Chart out;
-  set_time_axis(out, replay, options);
-  add_run_marks(out, replay);
+  Chart out = chart_over_time(replay, options);
   add_best_sensor(out, run.sensor_error, replay);
-  out.series.push_back(signal_series(method_of(replay), error, replay, kEstimateLook));
-  Extent y(false);
-  for (const FigureSeries& series : out.series) take_series(y, series, out.x);
-  set_value_axis(out, "Estimate − reference", replay.unit, y, options, 0.06);
+  add_estimate(out, error, "Estimate − reference", replay, options);
   out.about = "Error of the estimate over the run";
   return out;
 }
 
 Chart window_figure(std::span<const FigureSource> sources, const FigureOptions& options) {
   const ShownReplay replay = shown_replay(sources[0], options);
-  Chart out;
-  set_time_axis(out, replay, options);
-  add_run_marks(out, replay);
+  Chart out = chart_over_time(replay, options);
   Extent y(true);
   const auto shown = shown_algorithms(replay, options);
   for (std::size_t k = 0; k < shown.size(); ++k) {
@@ -225,9 +229,7 @@ Chart sensors_over_time(std::span<const FigureSource> sources, const FigureOptio
     throw kind_refusal(sources[0], kind).says("of several inputs there is more than one weight per sensor");
   const std::vector<double>& last = variances ? tracked->variances : tracked->weights[0];
   const Timeline& track = variances ? tracked->variance_track : tracked->weight_track;
-  Chart out;
-  set_time_axis(out, replay, options);
-  add_run_marks(out, replay);
+  Chart out = chart_over_time(replay, options);
   Extent y(variances);
   for (const std::size_t i : drawn_sensors(replay, options, last, variances)) {
     if (!track.empty()) {

@@ -23,11 +23,10 @@ void PackedBytes::refuse(std::string what) const {
 
 #if LIBCHAR_HAVE_ZLIB
 
-bool zlib_is_here() { return true; }
-
 namespace {
+constexpr bool kZlibIsHere = true;  // which inflates, and knows the checksum
 constexpr std::size_t kPackedPiece = std::size_t{1} << 16U;
-}
+}  // namespace
 
 struct PackedBytes::Inflater {
   z_stream stream{};
@@ -80,7 +79,9 @@ void PackedBytes::drain() {
 
 #else  // without zlib
 
-bool zlib_is_here() { return false; }
+namespace {
+constexpr bool kZlibIsHere = false;
+}
 
 struct PackedBytes::Inflater {};
 
@@ -135,7 +136,7 @@ void PackedBytes::skip(std::uint64_t count) {
 namespace {
 
 void check_crc(const BinaryFile& file, const PackedArray& array, std::uint32_t found) {
-  if (!zlib_is_here() || !array.crc || *array.crc == found) return;
+  if (!kZlibIsHere || !array.crc || *array.crc == found) return;
   throw input_error("E0462", fmt::format("{}, {}", file.path(), array.name))
       .says("is damaged: its checksum is {:08x}, {:08x} was expected", found, *array.crc)
       .hint("copy the file again");
@@ -199,7 +200,7 @@ class PlanarCursor final : public ArrayCursor {
   PlanarCursor(const BinaryFile& file, const PackedArray& array, const ArrayRows& rows,
                const std::vector<std::uint64_t>& columns, std::uint64_t& consumed)
       : rows_(rows.rows), to_the_end_(array.to_the_end), element_bytes_(array.element_bytes), consumed_(consumed) {
-    if (array.crc && zlib_is_here()) {
+    if (array.crc && kZlibIsHere) {
       PackedBytes all(file, array.stretch, array.name);
       read_out(all, array.stretch.bytes);
       check_crc(file, array, all.crc());

@@ -31,9 +31,6 @@ struct PackedStretch {
   Packing packing = Packing::stored;
 };
 
-/// Is zlib built in, which inflates and knows the checksum?
-bool zlib_is_here();
-
 /// No output of deflate is longer than this many times its input (258 bytes from 2 bits).
 inline constexpr std::uint64_t kDeflateRatio = 1032;
 

@@ -233,17 +233,9 @@ std::string facts(const CharacterizationView& view) {
                        log.time.from_stamps ? " (from the stamps)" : " (stated)",
                        html_text(duration_text(view.duration_s)));
   }
-  if (log.time.gaps > 0) {
-    out += fmt::format(" · <b>{}</b> {}, <b>{}</b> {} missing", count_text(log.time.gaps),
-                       log.time.gaps == 1 ? "gap" : "gaps", count_text(log.time.missing_samples),
-                       log.time.missing_samples == 1 ? "sample" : "samples");
-  } else {
-    std::uint64_t blank = 0;
-    for (const ChannelResult& c : result.channels) blank = std::max<std::uint64_t>(blank, c.quality.missing);
-    out += " · no gaps";
-    if (blank > 0) out += fmt::format(" in time, up to <b>{}</b> samples of a channel missing", count_text(blank));
-  }
-  return out + "</p>\n";
+  std::uint64_t blank = 0;
+  for (const ChannelResult& c : result.channels) blank = std::max<std::uint64_t>(blank, c.quality.missing);
+  return out + " · " + detail::missing_text({log.time.gaps, log.time.missing_samples, blank}, "<b>", "</b>") + "</p>\n";
 }
 
 std::string channel_link(const ChannelView& c, std::size_t i) {

@@ -67,11 +67,16 @@ Table conditions(const Json& document, const ReportedCharacterization& report) {
   out.add({"Recording", text_at(document, "/recording/file")});
   out.add({"SHA-256", text_at(document, "/recording/sha256")});
   const double rate_hz = number_at(document, "/recording/rate_hz"), samples = number_at(document, "/recording/samples");
+  double blank = 0;
+  for (const Json& channel : found(document, "/quality/channels"))
+    blank = std::max(blank, number_at(channel, "/missing"));
+  const auto count_at = [&](const char* place) { return clamped_whole<std::uint64_t>(number_at(document, place)); };
   if (rate_hz > 0)
     out.add({"Duration",
-             fmt::format("{}: {} samples at {}, {} missing", duration_text(samples / rate_hz),
+             fmt::format("{}: {} samples at {}, {}", duration_text(samples / rate_hz),
                          count_text(clamped_whole<std::uint64_t>(samples)), detail::frequency_text(rate_hz, 9),
-                         count_text(clamped_whole<std::uint64_t>(number_at(document, "/recording/missing_samples"))))});
+                         detail::missing_text({count_at("/recording/gaps"), count_at("/recording/missing_samples"),
+                                               clamped_whole<std::uint64_t>(blank)}))});
   for (const ReportedChannel& c : report.channels)
     if (c.events > 0) out.add({c.name, plural(c.events, "event") + " taken out before the fit"});
   for (const char* asked : {"Temperature", "Supply, warm-up time", "Mounting, orientation", "Equipment"})

@@ -21,13 +21,11 @@ std::string characterization_text(const CharacterizationView& view, const TextLo
   const Characterization& result = *view.result;
   const LogInfo& log = result.log;
   const double rate = log.time.rate_hz;
-  const std::string length = rate > 0
-                                 ? fmt::format("{}, {}", detail::frequency_text(rate, 6),
-                                               duration_text(static_cast<double>(log.samples) / rate))
-                                 : fmt::format("{} sample{}, rate unknown", log.samples, log.samples == 1 ? "" : "s");
-  std::string text =
-      fmt::format("{}: {} channel{}, {}, {} gap{}\n", printable(log.file), log.channels.size(),
-                  log.channels.size() == 1 ? "" : "s", length, log.time.gaps, log.time.gaps == 1 ? "" : "s");
+  const std::string length = rate > 0 ? fmt::format("{}, {}", detail::frequency_text(rate, 6),
+                                                    duration_text(static_cast<double>(log.samples) / rate))
+                                      : plural(log.samples, "sample") + ", rate unknown";
+  std::string text = fmt::format("{}: {}, {}, {}\n", printable(log.file), plural(log.channels.size(), "channel"),
+                                 length, plural(log.time.gaps, "gap"));
   if (result.still) text += printable(result.still->sentence) + "\n";
   for (const ChannelView& channel : view.channels) {
     const ChannelResult& c = *channel.result;

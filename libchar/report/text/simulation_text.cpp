@@ -12,10 +12,9 @@
 namespace libchar {
 
 std::string simulation_text(const ArraySimulation& s, const SimulatedLog& written) {
-  std::string text =
-      fmt::format("{}: {} samples of {} channel{} at {}, {}, seed {}\n", printable(written.files.at(0)), s.samples,
-                  written.channels, written.channels == 1 ? "" : "s", detail::frequency_text(s.rate_hz, 6),
-                  duration_text(static_cast<double>(s.samples) / s.rate_hz), s.seed);
+  std::string text = fmt::format("{}: {} samples of {} at {}, {}, seed {}\n", printable(written.files.at(0)), s.samples,
+                                 plural(written.channels, "channel"), detail::frequency_text(s.rate_hz, 6),
+                                 duration_text(static_cast<double>(s.samples) / s.rate_hz), s.seed);
   for (std::size_t i = 0; i < s.sensors.size(); ++i) {
     const SensorModel& m = s.sensors[i].model;
     if (m.scale_factor.spread > 0 || m.bias.spread > 0)

@@ -272,7 +272,7 @@ std::string sentences(const QuantityLot& q) {
   return bullet_list(out, "facts");
 }
 
-/// Curves of one quantity, in the unit of the first: a colour a device, a dash a channel.
+/// Curves of one quantity, in the unit in which the lot compares it: a colour a device, a dash a channel.
 struct AllanFigure {
   std::string measures, unit, deviation;
   double to_si = 1;
@@ -286,13 +286,22 @@ std::size_t place_in(std::vector<std::string>& names, const std::string& name) {
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-AllanFigure& figure_of(const Channel& channel, const std::optional<Unit>& unit, std::vector<AllanFigure>& figures) {
-  const std::string measures = unit                   ? detail::quantity_title(channel.unit)
+/// That of the channel where the lot compares nothing in a unit of that kind.
+std::optional<Unit> compared_unit(const FleetLot& lot, const Unit& unit) {
+  for (const QuantityLot& q : lot.quantities)
+    if (const auto own = find_unit(q.channel_unit); own && own->quantity == unit.quantity) return own;
+  return unit;
+}
+
+AllanFigure& figure_of(const FleetLot& lot, const Channel& channel, std::vector<AllanFigure>& figures) {
+  const auto own = find_unit(channel.unit);
+  const std::string measures = own                    ? detail::quantity_title(channel.unit)
                                : channel.unit.empty() ? "no unit"
                                                       : "in " + channel.unit;
   const auto at =
       std::find_if(figures.begin(), figures.end(), [&](const AllanFigure& f) { return f.measures == measures; });
   if (at != figures.end()) return *at;
+  const std::optional<Unit> unit = own ? compared_unit(lot, *own) : own;
   return figures.emplace_back(AllanFigure{
       measures, unit ? unit->symbol : channel_unit_text(channel.unit), "", unit ? unit->to_si : 1, {}, {}, {}});
 }
@@ -308,7 +317,7 @@ void add_curve(const FleetReport& report, std::size_t recording, std::size_t cha
                std::vector<AllanFigure>& figures) {
   const ChannelResult& result = report.recordings[recording].channels[channel];
   const auto unit = find_unit(result.channel.unit);
-  AllanFigure& figure = figure_of(result.channel, unit, figures);
+  AllanFigure& figure = figure_of(*report.lot, result.channel, figures);
   figure.deviation = deviation_row(result.allan.type).title;
   const bool strong = stands_out(*report.lot, recording, channel);
   const std::string device = report.records[recording].device + (strong ? " (outlier)" : "");

@@ -110,6 +110,18 @@ std::string html_head(const Table& table, const Shown& shown) {
 
 }  // namespace
 
+std::string detail::missing_text(const MissingSamples& missing, std::string_view open, std::string_view close) {
+  const auto counted = [&](std::uint64_t n, const char* one, const char* many) {
+    return fmt::format("{}{}{} {}", open, count_text(n), close, n == 1 ? one : many);
+  };
+  if (missing.gaps > 0)
+    return fmt::format("{}, {} missing", counted(missing.gaps, "gap", "gaps"),
+                       counted(missing.in_gaps, "sample", "samples"));
+  if (missing.of_a_channel == 0) return "no gaps";
+  return fmt::format("no gaps in time, up to {} of a channel missing",
+                     counted(missing.of_a_channel, "sample", "samples"));
+}
+
 std::string html_table(const Table& table, const PageTable& look) {
   Shown shown;
   for (std::size_t c = 0; c < table.columns.size(); ++c)

@@ -44,6 +44,17 @@ std::string json_in_script(const Json& document);
 /// For the inside of an HTML comment: "--" cannot occur, so the comment ends where we end it.
 std::string html_comment(std::string_view text);
 
+namespace detail {
+
+/// Of a recording: gaps of its stamps, the samples in them, and the most samples that one channel lacks.
+struct MissingSamples {
+  std::uint64_t gaps = 0, in_gaps = 0, of_a_channel = 0;
+};
+/// "1 gap, 1 001 samples missing", "no gaps in time, up to 4 samples of a channel missing"; numbers within the tags.
+std::string missing_text(const MissingSamples& missing, std::string_view open = "", std::string_view close = "");
+
+}  // namespace detail
+
 /// How a table stands on a page.
 struct PageTable {
   const char* css = "";

@@ -14,6 +14,9 @@
 namespace libchar {
 namespace {
 
+/// A point in time, in seconds without trailing zeros: "400 s".
+std::string instant_text(double seconds) { return std::isfinite(seconds) ? brief_text(seconds, 8) + " s" : "–"; }
+
 std::vector<Cell::Mark> marks_of(const AlgorithmView& v) {
   const AlgorithmResult& a = *v.result;
   std::vector<Cell::Mark> out;
@@ -327,8 +330,6 @@ std::string with_unit(double value, int digits, const std::string& unit) {
   const std::string number = number_text(value, digits);
   return unit.empty() || !std::isfinite(value) ? number : number + " " + unit;
 }
-
-std::string instant_text(double seconds) { return std::isfinite(seconds) ? brief_text(seconds, 8) + " s" : "–"; }
 
 std::string stretch_text(double from_s, double to_s) {
   return instant_text(from_s) + " … " + (std::isfinite(to_s) ? instant_text(to_s) : "the end");

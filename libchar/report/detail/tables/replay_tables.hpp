@@ -49,8 +49,6 @@ std::string score_name(const ReplayResult& result);
 std::string with_unit(double value, int digits, const std::string& unit);
 /// Unit of the first input in its usual spelling, "" where none is stated.
 std::string score_unit(const ReplayResult& result);
-/// A point in time, in seconds without trailing zeros: "400 s".
-std::string instant_text(double seconds);
 /// "400 s … 500 s", "600 s … the end".
 std::string stretch_text(double from_s, double to_s);
 
