@@ -87,6 +87,15 @@ bool off_multiples(std::span<const double> times) {
   return true;
 }
 
+/// Rows that keep to one line, however they scatter about it.
+bool on_line(std::span<const double> times) {
+  constexpr double kOff = 1.5;
+  const double step = times.back() / static_cast<double>(times.size() - 1);
+  for (std::size_t i = 0; i < times.size(); ++i)
+    if (std::fabs(times[i] - step * static_cast<double>(i)) > kOff * step) return false;
+  return true;
+}
+
 }  // namespace
 
 EvenClock clock_behind(const std::vector<std::int64_t>& stamps, double ns) {
@@ -101,7 +110,7 @@ EvenClock clock_behind(const std::vector<std::int64_t>& stamps, double ns) {
   const double step = kStep / times.back();
   const double frequency = refined(times, highest(times, kLowest, kHighest, step), step / 2);
   const double found = power(times, frequency);
-  if (found * static_cast<double>(times.size()) < kChance || !lasts(times, frequency)) return {true, {}};
+  if (found * static_cast<double>(times.size()) < kChance || !lasts(times, frequency)) return {!on_line(times), {}};
   if (found > kTidy) return {};
   return {true, ns / frequency};
 }
