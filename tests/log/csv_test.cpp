@@ -1,6 +1,7 @@
 // Dialects of CSV that must just work, and what must be refused with a sentence.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -583,6 +584,100 @@ TEST_CASE("rows of several sensors in turn are no one sensor, however even their
   CHECK(read_text(table("unit", [](int i) { return i / 50 % 2; })).samples.size() == 2);
 }
 
+namespace {
+
+struct BusFrame {
+  double time;
+  int kind;
+};
+
+// One source from the beginning; two slower ones that begin `late` s after it.
+std::string bus_frames(const char* column, const char* const (&names)[3], double late, bool sorted = false) {
+  std::vector<BusFrame> rows;
+  for (int k = 0; k < 4000; ++k) rows.push_back({0.01 * k, 0});
+  for (int kind = 1; kind < 3; ++kind)
+    for (int k = 0; late + 0.1 * k + 0.003 * kind < 40; ++k) rows.push_back({late + 0.1 * k + 0.003 * kind, kind});
+  std::stable_sort(rows.begin(), rows.end(), [sorted](const BusFrame& a, const BusFrame& b) {
+    return sorted ? a.kind < b.kind : a.time < b.time;
+  });
+  std::string text = fmt::format("time [s],{},x\n", column);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    text += fmt::format("{:.6f},{},{}\n", rows[i].time, names[rows[i].kind], 100 * rows[i].kind + i * i % 17);
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a bus on which others than the first source are heard late is found on the whole file") {
+  const char* const numbers[] = {"288", "580", "992"};
+  const char* const words[] = {"0x120", "0x244", "0x3E0"};
+  const char* const digits[] = {"120", "1A0", "3E0"};
+  CHECK_THAT(failure(bus_frames("ID", digits, 0.98)), Catch::Contains("E0327") && Catch::Contains("120, 1A0, 3E0"));
+  for (const double late : {0.98, 12.0, 30.0}) {
+    for (const char* column : {"id", "can_id", "Arbitration ID"}) {
+      CHECK_THAT(failure(bus_frames(column, numbers, late)),
+                 Catch::Contains("E0327") && Catch::Contains("288, 580, 992") && Catch::Contains("`group_by`"));
+      CHECK_THAT(failure(bus_frames(column, words, late)), Catch::Contains("E0327") && Catch::Contains("`group_by`"));
+    }
+    ReadOptions options;
+    options.kinds.group_by = "id";
+    const Recording all = read_text(bus_frames("id", numbers, late), options);
+    CHECK(names(all) == Names{"288", "580", "992"});
+    options.channels = {"288"};
+    CHECK(read_text(bus_frames("id", numbers, late), options).info.time.rate_hz == Approx(100));
+    options = {};
+    options.kinds.where = {"id=580"};
+    CHECK(read_text(bus_frames("id", numbers, late), options).info.time.rate_hz == Approx(10));
+  }
+}
+
+TEST_CASE("numbers in a column called after kinds that change on an even clock are values") {
+  std::string text = "t [s],channel,x\n";
+  for (int i = 0; i < 4000; ++i) text += fmt::format("{:.2f},{},{}\n", 0.01 * i, i / 900, i * i % 17);
+  CHECK(read_text(text).samples.size() == 2);
+  text = "t [s],unit,x\n";
+  for (int i = 0; i < 4000; ++i)
+    text += fmt::format("{:.4f},{},{}\n", 0.01 * i + 0.001 * (i * 7919 % 5), i / 900, i % 17);
+  CHECK(read_text(text).samples.size() == 2);
+}
+
+TEST_CASE("rows sorted by a column, the time of each of whose values begins again: the column is said") {
+  const char* const numbers[] = {"17", "4", "9"};
+  const std::string text = bus_frames("wagon", numbers, 0, true);
+  CHECK_THAT(failure(text), Catch::Contains("E0317") && Catch::Contains("sorted by wagon") &&
+                                Catch::Contains("`where` wagon=17") && Catch::Contains("`group_by` wagon"));
+  ReadOptions options;
+  options.kinds.group_by = "wagon";
+  const Recording all = read_text(text, options);
+  CHECK(names(all) == Names{"17", "4", "9"});
+  CHECK(all.info.time.rate_hz == Approx(100));
+  const auto mean = [&](std::size_t channel) {
+    double sum = 0, count = 0;
+    for (const double value : all.samples[channel])
+      if (!std::isnan(value)) {
+        sum += value;
+        ++count;
+      }
+    return std::pair(sum / count, count);
+  };
+  CHECK(mean(0).second == 4000);
+  CHECK(mean(1).second == 400);
+  CHECK(mean(2).first > 200);
+  options.channels = {"4", "9"};
+  CHECK(names(read_text(text, options)) == Names{"4", "9"});
+  options = {};
+  options.kinds.where = {"wagon=4"};
+  CHECK(read_text(text, options).info.time.rate_hz == Approx(10));
+  // Few rows of each.
+  std::string few = "t,probe nr,x,y\n";
+  for (int probe = 0; probe < 4; ++probe)
+    for (int i = 0; i < 20; ++i) few += fmt::format("{:.1f},{},{},{}\n", 0.1 * i, 5 - probe, i * i % 17, i % 3);
+  CHECK_THAT(failure(few), Catch::Contains("E0327") && Catch::Contains("`group_by` 'probe nr'"));
+  options = {};
+  options.kinds.group_by = "probe nr";
+  CHECK(read_text(few, options).samples.size() == 8);
+}
+
 TEST_CASE("a stamp with more digits than nanoseconds have does no harm where parts of a second may count") {
   std::string text = "time,x\n";
   for (int i = 0; i < 400; ++i) {
@@ -653,8 +748,9 @@ TEST_CASE("a long table made wide: a row for each stamp, or for each turn") {
   CHECK(own.info.rows == 6);
   CHECK(own.info.warnings.find("stamps_apart") == nullptr);
   options.kinds.own_stamps = false;
-  CHECK_THAT(failure("t,id,x\n0,a,1\n1,a,2\n2,a,3\n0,b,1\n1,b,2\n", options),
-             Catch::Contains("E0328") && Catch::Contains("`where` id=a"));
+  const Recording blocks = read_text("t [s],id,x\n0,a,1\n1,a,2\n2,a,3\n0,b,4\n1,b,5\n", options);
+  CHECK(blocks.samples[0] == std::vector<double>{1, 2, 3});
+  CHECK(blocks.samples[1][1] == 5);
   options = {};
   options.kinds.where = {"id=b"};
   const Recording one = read_text("t,id,x\n0,a,1\n0,b,2\n1,a,3\n1,b,4\n2,a,5\n2,b,6\n", options);

@@ -568,10 +568,13 @@ TEST_CASE("a long table of a dashboard, one series behind the other") {
   for (const char* series : {"Probe-1", "Probe-2"})
     for (int k = 0; k < kLoggerRows; ++k)
       text += fmt::format("\"{}\";\"2020-05-04T15:{:02}:{:02}+02:00\";{:.2f}\n", series, k / 60, k % 60, logged(k, 1));
-  CHECK_THAT(failure(text), Contains("E0327") && Contains("`where` Series=Probe-1") && !Contains("group_by"));
+  CHECK_THAT(failure(text), Contains("E0327") && Contains("`where` Series=Probe-1") && Contains("`group_by` Series"));
   ReadOptions one;
   one.kinds.where = {"Series=Probe-1"};
   CHECK(read_text(text, one).info.time.rate_hz == Approx(1));
+  one = {};
+  one.kinds.group_by = "Series";
+  CHECK(names_in(read_text(text, one)) == std::vector<std::string>{"Probe-1", "Probe-2"});
 }
 
 TEST_CASE("numbers of many sources that share their stamps") {

@@ -1,8 +1,15 @@
 #include "libchar/log/time/stamp_model.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <random>
+
+#include "libchar/log/time/clock_behind.hpp"
+#include "tests/log/log_text.hpp"
 
 using namespace libchar;
 
@@ -149,4 +156,109 @@ TEST_CASE("few rows lost at random stay missing where chance keeps them near a l
     wrong += std::fabs(model_of_stamps(stamps).ns - 1e9) > 1e6;
   }
   CHECK(wrong <= 4);
+}
+
+// The even clock behind stamps that come late, some of whose rows are lost.
+
+namespace {
+
+using Delay = std::function<double(std::mt19937_64&)>;  // in intervals
+
+std::vector<std::int64_t> late_stamps(const Delay& delay, double loss, unsigned seed, int rows = 1200) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> any;
+  std::vector<std::int64_t> out;
+  for (int k = 0; k < rows; ++k) {
+    if (any(random) < loss) continue;
+    const auto stamp = static_cast<std::int64_t>(1e7 * (k + delay(random)));
+    out.push_back(out.empty() ? stamp : std::max(stamp, out.back() + 1000));
+  }
+  return out;
+}
+
+std::vector<std::int64_t> renewed(const Delay& step, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::vector<std::int64_t> out = {0};
+  for (int k = 0; k < 1200; ++k) out.push_back(out.back() + static_cast<std::int64_t>(1e7 * step(random)));
+  return out;
+}
+
+const Delay kExponential = [](std::mt19937_64& random) {
+  return 0.3 * std::exponential_distribution<double>()(random);
+};
+const Delay kLong = [](std::mt19937_64& random) { return 0.6 * std::exponential_distribution<double>()(random); };
+const Delay kHalfNormal = [](std::mt19937_64& random) {
+  return std::fabs(std::normal_distribution<double>(0, 0.3)(random));
+};
+
+std::string late_table(const std::vector<std::int64_t>& stamps) {
+  std::string text = "time [s],x\n";
+  for (std::size_t i = 0; i < stamps.size(); ++i)
+    text += fmt::format("{:.6f},{}\n", static_cast<double>(stamps[i]) / 1e9, i * i % 17);
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("the clock behind late stamps is found whatever is lost, from an interval that is off") {
+  for (const Delay& delay : {kExponential, kLong, kHalfNormal})
+    for (const double loss : {0.0, 0.02, 0.08, 0.2})
+      for (unsigned seed = 0; seed < 4; ++seed)
+        for (const double off : {0.95, 1.15}) {
+          const EvenClock found = clock_behind(late_stamps(delay, loss, seed), 1e7 * off);
+          CHECK(found.needed);
+          REQUIRE(found.ns);
+          CHECK(*found.ns == Approx(1e7).epsilon(3e-4));
+        }
+}
+
+TEST_CASE("stamps without an even clock have none behind them, tidy ones need none") {
+  const Delay poisson = [](std::mt19937_64& random) { return std::exponential_distribution<double>()(random); };
+  const Delay sleeps = [](std::mt19937_64& random) { return std::normal_distribution<double>(1, 0.2)(random); };
+  const Delay uniform = [](std::mt19937_64& random) {
+    return std::uniform_real_distribution<double>(0.2, 1.8)(random);
+  };
+  for (unsigned seed = 0; seed < 20; ++seed)
+    for (const Delay& step : {poisson, sleeps, uniform}) {
+      const EvenClock found = clock_behind(renewed(step, seed), 1e7);
+      CHECK(found.needed);
+      CHECK_FALSE(found.ns);
+    }
+  const Delay none = [](std::mt19937_64&) { return 0.0; };
+  const Delay little = [](std::mt19937_64& random) { return std::uniform_real_distribution<double>(0, 0.2)(random); };
+  for (const Delay& delay : {none, little}) CHECK_FALSE(clock_behind(late_stamps(delay, 0.1, 1), 1e7).needed);
+}
+
+TEST_CASE("rates of logs with late stamps and lost rows are right to a thousandth") {
+  for (const Delay& delay : {kExponential, kLong, kHalfNormal})
+    for (const double loss : {0.0, 0.02, 0.08, 0.2})
+      for (unsigned seed = 10; seed < 14; ++seed)
+        CHECK(test::read_text(late_table(late_stamps(delay, loss, seed, 4000))).info.time.rate_hz ==
+              Approx(100).epsilon(1e-3));
+}
+
+TEST_CASE("rows lost in packets of one stamp are said, with the rate of whole packets") {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> any;
+  std::string lossy = "time [s],x\n", whole = lossy, coarse = lossy;
+  for (int k = 0; k < 4000; ++k) {
+    const std::string row = fmt::format("{:.3f},{}\n", k / 10 * 0.1, k * k % 17);
+    whole += row;
+    if (any(random) > 0.05) lossy += row;
+    coarse += fmt::format("{:.1f},{}\n", std::floor(k * 0.0107 * 10) / 10, k * k % 17);
+  }
+  const Recording r = test::read_text(lossy);
+  REQUIRE(test::count(r, "uneven_sampling") == 1);
+  CHECK(r.info.warnings.find("uneven_sampling")->sentence.find("100 Hz") != std::string::npos);
+  CHECK(test::count(test::read_text(whole), "uneven_sampling") == 0);
+  CHECK(test::count(test::read_text(coarse), "uneven_sampling") == 0);
+}
+
+TEST_CASE("rows that keep no even clock are said to be uneven") {
+  std::size_t said = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const auto stamps = renewed([](auto& random) { return std::exponential_distribution<double>()(random); }, seed);
+    said += test::count(test::read_text(late_table(stamps)), "uneven_sampling");
+  }
+  CHECK(said >= 19);  // of the seeds one looks like packets, which is said too
 }

@@ -14,19 +14,23 @@
 #include "libchar/core/parallel/thread_limit.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/pattern.hpp"
+#include "libchar/core/text/spelling.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/csv/chunk_pipeline.hpp"
 #include "libchar/log/csv/chunk_reader.hpp"
 #include "libchar/log/csv/head/dialect.hpp"
 #include "libchar/log/csv/head/header.hpp"
 #include "libchar/log/csv/head/plan.hpp"
+#include "libchar/log/csv/head/study.hpp"
 #include "libchar/log/csv/json_rows.hpp"
+#include "libchar/log/csv/long_table.hpp"
 #include "libchar/log/csv/rows/rows.hpp"
 #include "libchar/log/detail/channel_choice.hpp"
 #include "libchar/log/detail/format.hpp"
 #include "libchar/log/detail/odd_values.hpp"
 #include "libchar/log/detail/row_source.hpp"
 #include "libchar/log/tables/table_reader.hpp"
+#include "libchar/log/topics/joined_topics.hpp"
 #include "libchar/log/write/writers.hpp"
 
 namespace libchar {
@@ -139,6 +143,20 @@ class CsvSource final : public RowSource {
 
   const LogInfo& info() const override { return info_; }
 
+  bool several_clocks() const override {
+    if (!pivot_.active() || dialect_.groups.size() < 2 || dialect_.cycles) return false;
+    return std::none_of(dialect_.filters.begin(), dialect_.filters.end(),
+                        [this](const RowFilter& filter) { return filter.column == dialect_.group_column; });
+  }
+  std::optional<SortedRows> sorted_by() const override {
+    if (chunks_.packed() || dialect_.group_column >= 0 || !dialect_.filters.empty()) return std::nullopt;
+    return csv::sorted_by(stretches_of(info_.file, dialect_), dialect_);
+  }
+
+  /// Where all rows of one group come before those of the next, which are read side by side.
+  bool groups_in_blocks() const { return dialect_.sorted; }
+  std::vector<JoinedRows> each_group(const std::string& path, const ReadOptions& options) const;
+
   bool next(RowBlock& block, Findings& warnings) override {
     warnings.merge(std::exchange(pending_, {}));
     if (problem_) throw Error(*problem_);
@@ -225,6 +243,7 @@ class CsvSource final : public RowSource {
     dialect_ = understand(head, chunks_.whole(), options_, info_);
     if (chunks_.whole() && dialect_.data_offset >= head.size())
       throw input_error("E0322", info_.file).says("no data rows");
+    if (dialect_.sorted && (chunks_.made() || name == "standard input")) refuse_blocks();
     if (dialect_.group_column >= 0)
       plan_groups(options);
     else
@@ -270,6 +289,14 @@ class CsvSource final : public RowSource {
     std::vector<Channel> kept;
     for (const std::size_t c : pivot_.kept()) kept.push_back(info_.channels[c]);
     info_.channels = std::move(kept);
+    const auto group = [this](std::size_t channel) { return channel / plan_.channels; };
+    if (group(pivot_.kept().front()) == group(pivot_.kept().back())) only_group(group(pivot_.kept().front()));
+  }
+
+  // The rows of others say nothing then.
+  void only_group(std::size_t group) {
+    if (dialect_.cycles) return;
+    dialect_.filters.push_back({dialect_.group_column, dialect_.groups[group], false});
   }
 
   void group_channels() {
@@ -293,6 +320,13 @@ class CsvSource final : public RowSource {
 
   static std::uint64_t line_of(const RowBlock& block, std::size_t i) {
     return block.first_line + (block.line_offset.empty() ? i : block.line_offset[i]);
+  }
+
+  [[noreturn]] void refuse_blocks() const {
+    throw usage_error("E0328", info_.file)
+        .says("the rows of one kind come after those of another, and are not side by side: " +
+              first_names(dialect_.groups))
+        .hint("`where` {} reads one of them", shell_word(options_.kinds.group_by + "=" + dialect_.groups[0]));
   }
 
   // As many rows as there would be if all were as long as those in the head.
@@ -443,8 +477,33 @@ class CsvSource final : public RowSource {
   std::unique_ptr<ChunkPipeline> pipeline_;  // ends before what it reads
 };
 
+// A reader for each group, of those of its channels that are asked for.
+std::vector<JoinedRows> CsvSource::each_group(const std::string& path, const ReadOptions& options) const {
+  std::vector<JoinedRows> out;
+  for (std::size_t g = 0; g < dialect_.groups.size(); ++g) {
+    JoinedRows one;
+    one.name = dialect_.groups[g];
+    ReadOptions some = options;
+    some.kinds.group_by.clear();
+    some.kinds.where.push_back(options.kinds.group_by + "=" + one.name);
+    some.hash = options.hash && out.empty();
+    some.channels.clear();
+    for (std::size_t k = 0; k < pivot_.kept().size(); ++k) {
+      if (pivot_.kept()[k] / plan_.channels != g) continue;
+      one.channels.push_back(info_.channels[k].name);
+      some.channels.push_back(read_channels_[pivot_.kept()[k] % plan_.channels].name);
+    }
+    if (one.channels.empty()) continue;
+    one.rows = std::make_unique<CsvSource>(path, some);
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
 std::unique_ptr<RowSource> open(const std::string& path, const ReadOptions& options) {
-  return std::make_unique<CsvSource>(path, options);
+  auto source = std::make_unique<CsvSource>(path, options);
+  if (!source->groups_in_blocks()) return source;
+  return join_rows(source->each_group(path, options), options);
 }
 
 }  // namespace

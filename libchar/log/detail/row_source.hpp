@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ struct RowBlock {
   std::vector<std::int64_t> time_ns;  ///< stamps in ns, at least `rows` values; empty when there is no time column
   std::uint64_t first_line = 0;       ///< CSV: physical line of the first row (1-based); 0 for binary formats
   std::vector<std::uint32_t> line_offset;  ///< CSV: line of row i is first_line + line_offset[i]; empty = i
+};
+
+/// Rows of one kind after those of another, each with a time of its own.
+struct SortedRows {
+  std::string column, first;  ///< which says the kind, and of the first rows
 };
 
 /// A file opened by its format.
@@ -50,6 +56,10 @@ class RowSource {
   virtual std::string where(const RowBlock& block, std::size_t i, std::uint64_t rows_before) const {
     return info().file + " (" + place(block, i, rows_before) + ")";
   }
+  /// The rows are those of several clocks: how many there are in a second may change.
+  virtual bool several_clocks() const { return false; }
+  /// Asked for when the time begins again: by what the rows are sorted.
+  virtual std::optional<SortedRows> sorted_by() const { return std::nullopt; }
   /// Called once when reading ends (at the end of the file or of the window): warnings that need totals.
   virtual void finish(Findings& warnings) { static_cast<void>(warnings); }
   /// Bytes consumed and in total (0 when unknown), for progress.

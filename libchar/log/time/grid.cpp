@@ -279,7 +279,18 @@ void TimeGrid::without_stamps(Pending& front) {
 double TimeGrid::even_interval() {
   const double usual = step_.coarse ? sketch_.line_ns() : sketch_.interval_ns();
   const double spanned = sketch_.span_ns(last_.index, last_.stamp);
+  if (behind_.needed && !behind_.ns && spanned > 0) return spanned;
   const double off = std::abs(usual - spanned), rows = static_cast<double>(last_.index);
+  constexpr double kAsBehind = 5e-4;
+  if (behind_.ns && std::abs(usual - *behind_.ns) > kAsBehind * usual) {
+    warnings_.add(
+        "uneven_sampling",
+        fmt::format(
+            "stamps come late by up to an interval and more: the clock behind them has {} Hz, which is used. "
+            "Rows on the grid have {} Hz: which of them are missing is a guess, and times on the axes are off by that",
+            brief_text(1e9 / *behind_.ns, 6), brief_text(1e9 / usual, 6)));
+    return *behind_.ns;
+  }
   if (step_.even()) {  // inside packets, whose first rows scatter: does the line through these say another interval?
     constexpr double kWithin = 5;
     const StampModel::Packets& of = step_.model.packets;
@@ -312,7 +323,7 @@ std::optional<RateChange> TimeGrid::lasting_change(bool odd) const {
 // and, as are rows of which only each second or third is there, placed on the grid.
 void TimeGrid::judge_rate_change() {
   constexpr std::uint64_t kShare = 50, kRows = 64;
-  if (step_.coarse) return;
+  if (step_.coarse || source_.several_clocks()) return;
   watch_.end();
   const OddRun& odd = watch_.longest();
   double before = 1e9 / step_.ns, after = before / odd.intervals;

@@ -16,6 +16,7 @@
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/log/detail/row_source.hpp"
 #include "libchar/log/read.hpp"
+#include "libchar/log/time/clock_behind.hpp"
 #include "libchar/log/time/clock_breaks.hpp"
 #include "libchar/log/time/recent_stamps.hpp"
 #include "libchar/log/time/stamp_model.hpp"
@@ -152,6 +153,7 @@ class TimeGrid {
   void leave_out_first_rate(const std::vector<std::int64_t>& stamps);
   void refuse_without_axis(const std::vector<std::int64_t>& stamps);
   void say_pattern(const StampModel& found);
+  void look_behind(const std::vector<std::int64_t>& stamps, StampModel& found);
   double even_interval();
   void judge_rate_change();
   void refuse_bursts() const;
@@ -246,6 +248,7 @@ class TimeGrid {
   RateWatch watch_;
   Bursts bursts_;
   BackwardRows backward_;
+  EvenClock behind_;
   std::optional<std::int64_t> start_ns_;
   struct Clocks {
     OwnRows rows;

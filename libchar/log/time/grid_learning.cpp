@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
+#include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -25,6 +28,46 @@ bool steps_are_alike(const std::vector<std::int64_t>& stamps, double ns) {
   for (std::size_t i = 1; i < stamps.size(); ++i)
     alike += std::fabs(step_between(stamps[i - 1], stamps[i]) - ns) <= kOff * ns ? 1 : 0;
   return alike >= kMost * static_cast<double>(stamps.size() - 1);
+}
+
+// Rows that keep no clock, at their mean rate; steps far beyond the usual ones are pauses.
+StampModel without_clock(const std::vector<std::int64_t>& stamps) {
+  constexpr double kPause = 3;  // of the longest but two in a hundred
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < stamps.size(); ++i) steps.push_back(step_between(stamps[i - 1], stamps[i]));
+  std::sort(steps.begin(), steps.end());
+  const double longest = kPause * steps[steps.size() * 98 / 100];
+  const auto end = std::upper_bound(steps.begin(), steps.end(), longest);
+  const double ns = std::accumulate(steps.begin(), end, 0.0) / static_cast<double>(end - steps.begin());
+  return {ns, longest, StampPattern::uneven, ns, ns};
+}
+
+/// Rows of one stamp, one packet each usual time, most of them with the same number of rows and the others with fewer:
+/// some are lost. That number, in an interval of ns; none where a coarse clock or bursts make the numbers.
+std::optional<double> whole_packet_ns(const std::vector<std::int64_t>& stamps) {
+  constexpr std::size_t kFewest = 8, kLeastRows = 3;
+  constexpr double kSteady = 0.8, kOff = 0.05;
+  std::vector<std::size_t> sizes = {1};
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    if (stamps[i] == stamps[i - 1]) {
+      ++sizes.back();
+      continue;
+    }
+    steps.push_back(step_between(stamps[i - 1], stamps[i]));
+    sizes.push_back(1);
+  }
+  sizes.pop_back();  // may be cut
+  if (sizes.size() < kFewest) return std::nullopt;
+  const auto [least, most] = std::minmax_element(sizes.begin() + 1, sizes.end());
+  const auto of_size = [&](std::size_t rows) { return std::count(sizes.begin(), sizes.end(), rows); };
+  if (*most < kLeastRows || *least + 2 > *most || of_size(*most) <= of_size(*most - 1)) return std::nullopt;
+  std::vector<double> sorted = steps;
+  const double usual = median_in_place(sorted, Middle::lower);
+  const auto steady =
+      std::count_if(steps.begin(), steps.end(), [&](double step) { return std::fabs(step - usual) <= kOff * usual; });
+  if (static_cast<double>(steady) < kSteady * static_cast<double>(steps.size())) return std::nullopt;
+  return usual / static_cast<double>(*most);
 }
 
 }  // namespace
@@ -146,10 +189,11 @@ void TimeGrid::learn() {
   learned_ = true;
   if (!last_.any) drop_wild_start(first_stamps());
   const std::vector<std::int64_t> stamps = caught_up(first_stamps());
-  if (!last_.any) leave_out_first_rate(stamps);
+  if (!last_.any && !source_.several_clocks()) leave_out_first_rate(stamps);
   const double stated = source_.info().time.rate_hz;
-  const StampModel found =
+  StampModel found =
       model_of_stamps(stamps, options_.rate_hz || stated == 0 ? options_.rate_hz : std::optional(stated));
+  if (!options_.rate_hz && stated == 0 && !source_.several_clocks()) look_behind(stamps, found);
   const bool begins = window_.from_ns <= 0 || last_.any;
   const bool other = stamps.size() >= kEnough && std::fabs(found.ns - step_.ns) > 0.01 * step_.ns;
   if (!last_.any || other) step_ = Step(found);
@@ -162,8 +206,29 @@ void TimeGrid::learn() {
   if (step_.ns == 0 && stamps.size() > 1) refuse_without_axis(stamps);
   if (!begins) return;
   window_.begun = true;
+  if (const auto whole = step_.coarse && !options_.rate_hz ? whole_packet_ns(stamps) : std::nullopt)
+    warnings_.add("uneven_sampling",
+                  fmt::format("packets of one stamp have fewer rows at times: whole ones have {} Hz, which is the rate "
+                              "of the samples, and what is lost in the others is not counted",
+                              brief_text(1e9 / *whole, 5)));
   say_pattern(step_.model);
   begin();
+}
+
+// Stamps that scatter too far for their steps to tell: the interval is that of the clock behind them, if there is one.
+void TimeGrid::look_behind(const std::vector<std::int64_t>& stamps, StampModel& found) {
+  behind_ = {};
+  constexpr std::size_t kEqual = 10;  // of so many, one step at most: more tell of a coarse clock, or of packets
+  std::size_t equal = 0;
+  for (std::size_t i = 1; i < stamps.size(); ++i) equal += stamps[i] == stamps[i - 1] ? 1 : 0;
+  const bool rarely = equal > 0 && kEqual * equal < stamps.size() && found.pattern != StampPattern::packets;
+  if (found.pattern != StampPattern::steps && found.pattern != StampPattern::uneven && !rarely) return;
+  behind_ = clock_behind(stamps, found.ns);
+  constexpr double kAsBehind = 5e-4;
+  const bool even = !behind_.ns || std::fabs(*behind_.ns - found.ns) < kAsBehind * found.ns;
+  if (found.pattern == StampPattern::uneven && even) behind_ = {};  // turns of unlike steps, all told
+  if (behind_.needed && !behind_.ns) found = without_clock(stamps);
+  if (behind_.ns) found = {*behind_.ns, 1.5 * *behind_.ns, StampPattern::steps, *behind_.ns, *behind_.ns};
 }
 
 void TimeGrid::say_pattern(const StampModel& found) {
@@ -187,11 +252,19 @@ void TimeGrid::say_pattern(const StampModel& found) {
                                            detail::frequency_text(span_hz, 5), shortest(rounded(step_hz, 5))));
       return;
     case StampPattern::uneven:
+      if (behind_.needed && !behind_.ns) {
+        warnings_.add("uneven_sampling",
+                      fmt::format("the rows keep no even clock: {} is their mean rate, values are taken as if they "
+                                  "were even, and frequencies and averaging times are off by that",
+                                  detail::frequency_text(span_hz, 4)));
+        return;
+      }
       warnings_.add("uneven_stamps", fmt::format("the stamps take turns in steps of unlike length and keep to one "
                                                  "line: rows are spaced evenly at {}, rows over time",
                                                  detail::frequency_text(span_hz, 5)));
       return;
     case StampPattern::disputed:
+      if (source_.several_clocks()) return;
       fail(pending_.front(), 0, "E0324",
            fmt::format("two sampling rates: most stamps follow each other at {}, rows over time give {}, and "
                        "gaps do not explain it",

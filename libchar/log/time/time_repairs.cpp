@@ -284,6 +284,15 @@ TimeGrid::Verdict TimeGrid::backward(const Pending& front, std::size_t row, std:
   return Verdict::drop;
 }
 
+namespace {
+
+std::string sorted_hint(const SortedRows& rows) {
+  return fmt::format("`where` {} reads one of them, `group_by` {} makes channels of each",
+                     shell_word(rows.column + "=" + rows.first), shell_word(rows.column));
+}
+
+}  // namespace
+
 void TimeGrid::refuse_backward() const {
   const LogInfo& log = source_.info();
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) / 1e9; };
@@ -296,11 +305,14 @@ void TimeGrid::refuse_backward() const {
                        log.time.column.empty() ? "their stamps" : printable(log.time.column));
   if (ordered && last_.stamp > last_.first)
     hint = fmt::format("`to_s` {} reads what is before it, {}", shortest(seconds(last_.stamp - last_.first)), hint);
+  const auto sorted = source_.sorted_by();
+  if (sorted) hint = sorted_hint(*sorted);
   if (!log.topics.empty() && options_.time_source != "log")
     hint = "`time_source` log takes the time of recording, where the log has it; " + hint;
   throw input_error("E0317", backward_.place)
       .says(ordered ? fmt::format("the time steps back here by {} and goes on from there: {}", how_far,
-                                  log.time.unit_ns == kNsInSecond && last_.stamp - backward_.first < kNsInSecond
+                                  sorted ? "the rows are sorted by " + printable(sorted->column)
+                                  : log.time.unit_ns == kNsInSecond && last_.stamp - backward_.first < kNsInSecond
                                       ? "parts of a second without leading zeros, or two logs in one file"
                                   : 2 * (last_.stamp - backward_.first) < last_.stamp - last_.first
                                       ? "a clock that was set back, or two logs in one file"
@@ -317,9 +329,11 @@ void TimeGrid::refuse_many_backward() const {
   constexpr double kShare = 0.4;
   const Finding* const dropped = warnings_.find("backward_timestamp");
   if (dropped == nullptr || static_cast<double>(dropped->count) <= kShare * static_cast<double>(counts_.rows)) return;
+  const auto sorted = source_.sorted_by();
   throw input_error("E0317", source_.info().file)
-      .says("the time steps back in {} of {} rows: the stamps begin again and again", dropped->count, counts_.rows)
-      .hint("`time_column` none and `rate_hz` HZ take the rows one after the other");
+      .says("the time steps back in {} of {} rows: the stamps begin again and again{}", dropped->count, counts_.rows,
+            sorted ? ", with each " + printable(sorted->column) : "")
+      .hint(sorted ? sorted_hint(*sorted) : "`time_column` none and `rate_hz` HZ take the rows one after the other");
 }
 
 void TimeGrid::unwrap(const Pending& front, std::size_t row, const ClockWrap& wrap, std::int64_t& stamp) {

@@ -26,9 +26,11 @@ constexpr std::size_t kMostTopics = 64, kLearnt = 1025, kRowsPerBlock = 8192;
 /// Rows of a topic that are read and not yet taken.
 class TopicQueue {
  public:
-  TopicQueue(std::unique_ptr<RowSource> rows, std::string name) : name_(std::move(name)), source_(std::move(rows)) {}
+  explicit TopicQueue(JoinedRows rows)
+      : name_(std::move(rows.name)), channels_(std::move(rows.channels)), source_(std::move(rows.rows)) {}
 
   const std::string& name() const { return name_; }
+  const std::string& channel(std::size_t c) const { return channels_[c]; }
   const RowSource& source() const { return *source_; }
   RowSource& source() { return *source_; }
 
@@ -74,6 +76,7 @@ class TopicQueue {
     values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at_));
   }
   std::string name_;
+  std::vector<std::string> channels_;
   std::unique_ptr<RowSource> source_;
   RowBlock block_;
   std::vector<std::vector<double>> columns_;
@@ -138,7 +141,7 @@ class JoinedTopics final : public RowSource {
     for (std::size_t t = 0; t < topics_.size(); ++t)
       if (lost_[t] > 0)
         warnings.add("duplicate_timestamp",
-                     "rows of a topic that share a row of the joined table with another one: dropped",
+                     "rows that share a row of the joined table with another one of their topic or kind: dropped",
                      topics_[t].name(), lost_[t]);
   }
 
@@ -200,8 +203,9 @@ class JoinedTopics final : public RowSource {
     for (std::size_t t = 0; t < topics_.size(); ++t) {
       const LogInfo& part = topics_[t].source().info();
       names.push_back(printable(topics_[t].name()));
-      for (Channel channel : part.channels) {
-        channel.name = topics_[t].name() + "/" + channel.name;
+      for (std::size_t c = 0; c < part.channels.size(); ++c) {
+        Channel channel = part.channels[c];
+        channel.name = topics_[t].channel(c);
         channel.every = every_[t];
         info_.channels.push_back(std::move(channel));
       }
@@ -212,8 +216,9 @@ class JoinedTopics final : public RowSource {
     }
     row_.resize(info_.channels.size());
     if (topics_.size() > 1)
-      info_.dialect.push_back(
-          fmt::format("{} topics as one table, in rows of {}: {}", names.size(), names[base_], first_names(names)));
+      info_.dialect.push_back(fmt::format("{} {} as one table, in rows of {}: {}", names.size(),
+                                          options.topic.empty() ? "kinds of rows" : "topics", names[base_],
+                                          first_names(names)));
   }
 
   std::int64_t aligned(std::size_t topic) const {
@@ -303,6 +308,12 @@ class JoinedTopics final : public RowSource {
 
 }  // namespace
 
+std::unique_ptr<RowSource> join_rows(std::vector<JoinedRows> kinds, const ReadOptions& options) {
+  std::vector<TopicQueue> queues;
+  for (JoinedRows& rows : kinds) queues.emplace_back(std::move(rows));
+  return std::make_unique<JoinedTopics>(std::move(queues), std::vector<std::string>(), options);
+}
+
 std::unique_ptr<RowSource> open_joined_topics(const std::vector<TopicChoice>& chosen, const std::vector<LogTopic>& all,
                                               const OpenTopics& open, const std::string& path, std::string_view format,
                                               const ReadOptions& options) {
@@ -327,7 +338,10 @@ std::unique_ptr<RowSource> open_joined_topics(const std::vector<TopicChoice>& ch
           .says("this topic has no stamps, by which it could be joined with others")
           .got(one.topic)
           .hint("`topic` reads it alone");
-    topics.emplace_back(std::move(rows), one.topic);
+    JoinedRows part{nullptr, one.topic, {}};
+    for (const Channel& channel : rows->info().channels) part.channels.push_back(one.topic + "/" + channel.name);
+    part.rows = std::move(rows);
+    topics.emplace_back(std::move(part));
   }
   if (topics.empty())
     throw usage_error("E0425", path)

@@ -17,6 +17,9 @@ inline constexpr const char* kHexadecimal =
 
 using Cells = std::vector<Field>;
 
+/// Rows that follow each other, at several places of a file in its order.
+using Stretches = std::vector<std::vector<Cells>>;
+
 /// How numbers are written.
 struct NumberStyle {
   char decimal = '.';

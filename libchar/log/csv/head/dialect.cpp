@@ -427,8 +427,13 @@ void choose_time(Study& study) {
   };
   choose_stamps({study.rows, study.kinds, study.style(), rate, stated_tick(study), all_cells}, study.options,
                 study.dialect, info);
-  choose_groups(study.rows, study.options, study.dialect, info);
-  refuse_long_table(study.rows, study.kinds, study.options, study.dialect, info);
+  std::optional<Stretches> places;
+  const RowsOfFile all = [&]() -> const Stretches& {
+    if (!places) places = stretches_of(study);
+    return *places;
+  };
+  choose_groups(study.rows, all, study.options, study.dialect, info);
+  refuse_long_table(study.rows, all, study.kinds, study.options, study.dialect, info);
   if (study.dialect.time.column >= 0 && rate) info.time.rate_hz = *rate;  // decides what the stamps leave open
   if (study.dialect.time.column >= 0 || info.time.rate_hz > 0) return;
   if (!rate) return say_facts_of_time(study);

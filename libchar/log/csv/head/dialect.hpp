@@ -82,6 +82,7 @@ struct Dialect {
   std::vector<RowFilter> filters;
   int group_column = -1;              ///< its values make channels of their own
   std::vector<std::string> groups;    ///< these, in the order of the file
+  bool sorted = false;                ///< all rows of one group come before those of the next
   bool cycles = false;                ///< each group once, in turn: a turn is a row, at its first stamp
   std::int64_t clock_period_ns = 0;   ///< stamps begin again at midnight, or every hour; 0 = never
   std::size_t data_offset = 0;        ///< byte at which the first line after the header starts

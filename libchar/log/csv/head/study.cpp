@@ -124,6 +124,39 @@ void add_cells(const Dialect& dialect, std::string_view text, bool whole, const 
   }
 }
 
+constexpr std::size_t kPlaces = 64, kLook = 4096;
+
+// Hands whole lines at places all over a file to `take`; none of one that is no file, or whose bytes are not its text:
+// compressed, or UTF-16.
+template <class Take>
+void at_places(const std::string& path, std::string_view head, const Take& take) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(path, none)) return;
+  std::ifstream file(path, std::ios::binary);
+  const std::uint64_t size = std::filesystem::file_size(path, none);
+  std::string text(kLook, '\0');
+  const auto look_at = [&](std::uint64_t place) {
+    file.seekg(static_cast<std::streamoff>(place));
+    return static_cast<bool>(file.read(text.data(), static_cast<std::streamsize>(kLook)));
+  };
+  if (!look_at(0) || !head.starts_with(text)) return;
+  for (std::size_t k = 1; k <= kPlaces; ++k) {
+    if (!look_at(size / kPlaces * k - std::min<std::uint64_t>(kLook, size / kPlaces))) break;
+    take(std::string_view(text).substr(std::min(text.find('\n'), kLook - 1) + 1));
+  }
+}
+
+void add_rows(const Dialect& dialect, std::string_view text, bool whole, Stretches& out) {
+  out.emplace_back();
+  for (std::size_t offset = 0; offset < text.size();) {
+    const Line line = line_at(text, offset, 0);
+    offset = line.after;
+    if (offset == text.size() && !whole) return;  // may be cut
+    if (!trimmed(line.text).empty() && !is_comment(line.text, dialect.lines.semicolon_comments))
+      out.back().push_back(cells_in(dialect, line.text));
+  }
+}
+
 }  // namespace
 
 Refusal refusal(const Study& study, const Line& line, std::size_t column, std::string code) {
@@ -156,25 +189,42 @@ std::vector<std::vector<Cells>> filled_cells(const Study& study, const std::vect
 }
 
 std::vector<Cells> cells_further_on(const Study& study, std::size_t column) {
-  constexpr std::size_t kPlaces = 64, kLook = 4096;
   std::vector<std::vector<Cells>> out(1);
-  std::error_code none;
-  if (study.whole || !std::filesystem::is_regular_file(study.info.file, none)) return {};
-  std::ifstream file(study.info.file, std::ios::binary);
-  const std::uint64_t size = std::filesystem::file_size(study.info.file, none);
-  std::string text(kLook, '\0');
-  const auto look_at = [&](std::uint64_t place) {
-    file.seekg(static_cast<std::streamoff>(place));
-    return static_cast<bool>(file.read(text.data(), static_cast<std::streamsize>(kLook)));
-  };
-  if (!look_at(0) || !study.head.starts_with(text)) return {};  // compressed, or UTF-16
-  for (std::size_t k = 1; k <= kPlaces; ++k) {
-    if (!look_at(size / kPlaces * k - std::min<std::uint64_t>(kLook, size / kPlaces))) break;
-    const std::size_t row = std::min(text.find('\n'), kLook - 1) + 1;
-    add_cells(study.dialect, std::string_view(text).substr(row), false, {column},
-              std::numeric_limits<std::size_t>::max(), out);
-  }
+  if (!study.whole)
+    at_places(study.info.file, study.head, [&](std::string_view lines) {
+      add_cells(study.dialect, lines, false, {column}, std::numeric_limits<std::size_t>::max(), out);
+    });
   return std::move(out[0]);
+}
+
+Stretches stretches_of(const Study& study) {
+  Stretches out;
+  if (!study.whole)
+    at_places(study.info.file, study.head, [&](std::string_view lines) { add_rows(study.dialect, lines, false, out); });
+  if (!out.empty()) return out;
+  const std::string_view body = study.head.substr(std::min(study.dialect.data_offset, study.head.size()));
+  if (body.size() <= kPlaces * kLook) {
+    add_rows(study.dialect, body, study.whole, out);
+    return out;
+  }
+  for (std::size_t k = 1; k <= kPlaces; ++k) {
+    const std::string_view text = body.substr(body.size() / kPlaces * k - kLook, kLook);
+    add_rows(study.dialect, text.substr(std::min(text.find('\n'), kLook - 1) + 1), false, out);
+  }
+  return out;
+}
+
+Stretches stretches_of(const std::string& path, const Dialect& dialect) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(path, none)) return {};
+  std::string head(kPlaces * kLook, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  const ReadOptions options;
+  LogInfo info;
+  info.file = path;
+  return stretches_of(Study{.head = head, .whole = file.eof(), .options = options, .info = info, .dialect = dialect});
 }
 
 }  // namespace libchar::csv

@@ -46,4 +46,10 @@ std::vector<std::vector<Cells>> filled_cells(const Study& study, const std::vect
 /// The same at places all over the file, where it is longer than the head and its bytes are its text.
 std::vector<Cells> cells_further_on(const Study& study, std::size_t column);
 
+/// The rows at places all over the file, as far as they are known without unpacking it: those of a short one are all.
+Stretches stretches_of(const Study& study);
+
+/// The same of a file that is opened anew; none of a pipe.
+Stretches stretches_of(const std::string& path, const Dialect& dialect);
+
 }  // namespace libchar::csv

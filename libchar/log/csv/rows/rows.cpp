@@ -526,7 +526,8 @@ class CarefulLines {
   void refuse_kind(std::string_view text, const Span& span, const RowFilter& filter) {
     const std::string& name = to_.dialect.columns[static_cast<std::size_t>(filter.column)].name;
     fail("E0327", fmt::format("rows of another kind begin: {} was {} before", name, filter.value), std::string(text),
-         fmt::format("`where` {}={} reads the rows before, `channels` '!{}' reads all rows", name, filter.value, name),
+         fmt::format("`where` {} reads these, `group_by` {} makes channels of each, `channels` '!{}' reads all rows",
+                     shell_word(name + "=" + filter.value), shell_word(name), name),
          span.start);
   }
 
