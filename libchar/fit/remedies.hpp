@@ -43,9 +43,9 @@ void add_spike_answer(const SpikeAnswer& answer, NoiseFit& fit);
 Remedy lines_remedy(std::uint64_t clipped);
 
 namespace detail {
-/// Fills missing readings of a clock's phase with draws of what is around, up to three quarters of them and in runs of
-/// up to an eighth: a rate across a missing reading is not a missing rate, for the phase goes on from where it was. In
-/// place; how many were filled.
+/// Fills missing readings of a clock's phase with draws of what is around. A rate across a missing reading is not a
+/// missing rate: the phase goes on from where it was. Up to three quarters of the readings are filled, in runs of up to
+/// an eighth of the record. In place; how many were filled.
 std::size_t bridge_phase(std::vector<double>& phase);
 /// Standard deviation of the kurtosis of first differences of white noise.
 double kurtosis_sd(std::uint64_t samples);
