@@ -127,7 +127,7 @@
     const tip = (p) => {
       const out = ["τ = " + numberText(p.x) + " s", "measured " + numberText(p.y, 5) + (unit ? " " + unit : "")];
       if (a.ci95[p.i]) out.push("95 %: " + numberText(a.ci95[p.i][0]) + " … " + numberText(a.ci95[p.i][1]), "68 %: " + numberText(a.ci68[p.i][0]) + " … " + numberText(a.ci68[p.i][1]));
-      if (a.dof[p.i] !== null) out.push(numberText(a.dof[p.i]) + " degrees of freedom, " + a.terms[p.i] + " terms");
+      if (a.edf[p.i] !== null) out.push(numberText(a.edf[p.i]) + " degrees of freedom, " + a.terms[p.i] + " terms");
       if (a.model && a.model[p.i] !== null) out.push("model " + numberText(a.model[p.i], 5) + " " + unit);
       if (!a.reliable[p.i]) out.push("unreliable: fewer than 5 degrees of freedom");
       return out;

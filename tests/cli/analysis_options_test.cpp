@@ -102,7 +102,7 @@ TEST_CASE("allan says which deviation a row is, and what a log beyond the memory
   const std::string log = test::fixture("imu_at_rest.csv").string();
   const auto table = test::run({"allan", log, "-c", "gyro_z", "--type", "mdev", "--taus", "1s"});
   CHECK_THAT(table.out,
-             Contains("dof,terms,curve,findings\n") && Catch::EndsWith(",mdev,\n") && Contains("\ngyro_z,deg/s,1,"));
+             Contains("edf,terms,curve,findings\n") && Catch::EndsWith(",mdev,\n") && Contains("\ngyro_z,deg/s,1,"));
   const test::TemporaryFolder folder;
   const std::string longer = (folder / "long.f64").string();  // more than a leaf
   std::vector<double> samples((std::size_t{1} << 20U) + 1000);

@@ -184,7 +184,7 @@ TEST_CASE("allan as JSON has the keys that scripts rely on") {
   CHECK(document.at("version") == 1);
   CHECK(document.at("type") == "oadev");
   const Json& channel = document.at("channels").at(0);
-  for (const char* key : {"name", "unit", "tau_s", "deviation", "ci95", "dof", "terms"}) CHECK(channel.contains(key));
+  for (const char* key : {"name", "unit", "tau_s", "deviation", "ci95", "edf", "terms"}) CHECK(channel.contains(key));
   CHECK(channel.at("tau_s").size() == channel.at("deviation").size());
   CHECK(channel.at("terms").at(0) == 49999);
 }

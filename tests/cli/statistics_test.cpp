@@ -61,7 +61,7 @@ TEST_CASE("allan: several statistics come from one reading, each as it comes alo
     one.erase("type");
     CHECK(one == alone["channels"][channel]);
     CHECK(one["ci95"] == Json::array({nullptr, nullptr}));
-    CHECK(one["dof"] == Json::array({nullptr, nullptr}));
+    CHECK(one["edf"] == Json::array({nullptr, nullptr}));
   }
   const auto table = test::run({"allan", fixture_log(), "-c", "gyro_z", "--type", "mtie", "--taus", "1s"});
   CHECK_THAT(table.out, Contains(",,,,,,49951,mtie,\n"));

@@ -245,7 +245,7 @@ class TakesWhatPeopleHave(unittest.TestCase):
         curve = libchar.allan([x.copy()], rate_hz=100)[0]
         self.assertEqual((taus.tolist(), devs.tolist(), ns.tolist()),
                          (curve.tau_s.tolist(), curve.deviation.tolist(), curve.terms.tolist()))
-        self.assertLess(abs(errs[0] / (devs[0] / np.sqrt(2 * curve.dof[0])) - 1), 1e-12)
+        self.assertLess(abs(errs[0] / (devs[0] / np.sqrt(2 * curve.edf[0])) - 1), 1e-12)
         self.assertEqual(libchar.fit(x, 100, units="deg/s").unit, "deg/s")
         self.assertEqual(libchar.fit(x, 100, terms=["N", "B"]).to_dict(),
                          libchar.fit(x, 100, terms=["white_noise", "bias_instability"]).to_dict())

@@ -74,7 +74,7 @@ TEST_CASE("report.json: the keys that scripts rely on, in order, measured last")
   CHECK(allan["type"] == "oadev");
   const Json& curve = allan["channels"][0];
   const std::size_t n = result.channels[0].allan.points.size();
-  for (const char* key : {"tau_s", "deviation", "ci95", "dof", "terms", "m", "model"}) CHECK(curve[key].size() == n);
+  for (const char* key : {"tau_s", "deviation", "ci95", "edf", "terms", "m", "model"}) CHECK(curve[key].size() == n);
   CHECK(curve["ci95"][3].size() == 2);
 
   const Json& spectrum = report["spectrum"];

@@ -73,7 +73,7 @@ const Fields<AllanPoint>& point_fields() {
                  field<&T::tau_s>("tau_s"),
                  field<&T::deviation>("deviation"),
                  field<&T::ci95>("ci95", {.known = when<has_edf>}),
-                 field<&T::edf>("dof", {.meaning = "degrees of freedom", .known = when<has_edf>}),
+                 field<&T::edf>("edf", {.meaning = "degrees of freedom", .known = when<has_edf>}),
                  field<&T::terms>("terms", {.meaning = "differences averaged"}),
                  field<&T::m>("m", {.meaning = "averaging factor"}),
                  field<&T::ci68>("ci68", {.known = when<has_edf>}),

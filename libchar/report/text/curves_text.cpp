@@ -30,7 +30,7 @@ std::string known_of(std::vector<Finding> findings, const Findings& recording) {
 
 std::string allan_csv(const std::vector<Channel>& channels, const std::vector<AllanCurve>& curves,
                       const std::vector<std::vector<Finding>>& findings, const Findings& recording) {
-  std::string text = "channel,unit,tau_s,deviation,low68,high68,low95,high95,dof,terms,curve,findings\n";
+  std::string text = "channel,unit,tau_s,deviation,low68,high68,low95,high95,edf,terms,curve,findings\n";
   for (std::size_t c = 0; c < std::min(channels.size(), curves.size()); ++c) {
     const std::string known_of_it = known_of(c < findings.size() ? findings[c] : std::vector<Finding>{}, recording);
     for (const AllanPoint& p : curves[c].points) {

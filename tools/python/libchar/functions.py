@@ -277,7 +277,7 @@ def _curve(channel: dict[str, Any], kind: str) -> AllanCurve:
 
     ci95 = np.array([(np.nan, np.nan) if pair is None else pair for pair in channel["ci95"]],
                     dtype=np.float64).reshape(-1, 2)
-    return AllanCurve(channel["name"], channel["unit"], kind, array("tau_s"), array("deviation"), ci95, array("dof"),
+    return AllanCurve(channel["name"], channel["unit"], kind, array("tau_s"), array("deviation"), ci95, array("edf"),
                       np.array(channel["terms"], dtype=np.int64), channel.get("findings") or [],
                       {"type": kind, **channel})
 

@@ -276,7 +276,7 @@ class AllanCurve(_Drawn):
     tau_s: Array  #: averaging times, s
     deviation: Array  #: in the channel's unit (tdev: times s)
     ci95: Array  #: (n, 2): chi-square interval, 95 %
-    dof: Array  #: equivalent degrees of freedom
+    edf: Array  #: equivalent degrees of freedom
     terms: npt.NDArray[np.int64]  #: differences that were averaged
     findings: list[dict[str, Any]] = dataclasses.field(default_factory=list)  #: about the samples of the channel
     document: dict[str, Any] = dataclasses.field(default_factory=dict, repr=False)
@@ -286,7 +286,7 @@ class AllanCurve(_Drawn):
                 f"{self.tau_s[-1]:.4g} s")
 
     def __iter__(self) -> Iterator[Any]:
-        return iter((self.tau_s, self.deviation, self.deviation / np.sqrt(2 * self.dof), self.terms))
+        return iter((self.tau_s, self.deviation, self.deviation / np.sqrt(2 * self.edf), self.terms))
 
     def to_dict(self) -> dict[str, Any]:
         return _plain_document(self.document)
@@ -294,7 +294,7 @@ class AllanCurve(_Drawn):
     def to_dataframe(self) -> Any:
         """A pandas.DataFrame, one row per averaging time."""
         return frame({"tau_s": self.tau_s, "deviation": self.deviation, "low95": self.ci95[:, 0],
-                      "high95": self.ci95[:, 1], "dof": self.dof, "terms": self.terms})
+                      "high95": self.ci95[:, 1], "edf": self.edf, "terms": self.terms})
 
     def _drawn(self) -> tuple[str, dict[str, Any]]:
         return "allan", {"type": self.type, "channels": [self.document]}
