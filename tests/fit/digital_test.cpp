@@ -152,6 +152,12 @@ TEST_CASE("digital: counts are skewed, and rounded Gaussian noise is not") {
       REQUIRE(faults.rounding);
       CHECK(faults.rounding->of_counts);
     }
+    // Skewed less than counts, however clearly: a squared share of the noise.
+    std::vector<double> bent = noise(seed);
+    for (double& value : bent) value += 0.02 * value * value / kSigma;
+    const DigitalFaults less = test::digital_faults(rounded(bent, 0.8 * kSigma), kDigitalRate, 0.8 * kSigma);
+    REQUIRE(less.rounding);
+    CHECK(!less.rounding->of_counts);
     for (const double step : {0.3, 0.7, 1.2}) {
       const DigitalFaults faults =
           test::digital_faults(rounded(noise(seed), step * kSigma), kDigitalRate, step * kSigma);

@@ -11,7 +11,8 @@
 // Truncation towards zero (a conversion to an integer) has a step of twice the width there: of Gaussian noise n_k at k
 // steps, ln n_0 = (4 ln n_1 - ln n_2) / 3, n_k the mean of both sides; twice as many are a dead band of two steps.
 // Counts lie on a grid without being rounded, and are skewed as a rounded Gaussian is not: the mean cube of second
-// differences over sd^3 has the variance 15 / n at most, a sixth of it for white Gaussian noise.
+// differences over sd^3 has the variance 15 / n at most, a sixth of it for white Gaussian noise. Of white noise of the
+// skewness g it is g / sqrt(6), and the sd sqrt(6) times as large: g > a q / sd is cube / sd^3 > a q / sd of both.
 #include "libchar/fit/signs/digital.hpp"
 
 #include <fmt/format.h>
@@ -78,11 +79,12 @@ DigitalSums::Skew skew_of(std::span<const double> record, const ValueCensus& cen
   return out;
 }
 
-bool is_skewed(const DigitalSums::Skew& skew) {
-  constexpr double kClear = 5, kVariance = 15;  ///< standard deviations
+/// As counts of one step each are, whose skewness is the step over the standard deviation, or half as much.
+bool is_skewed(const DigitalSums::Skew& skew, double step) {
+  constexpr double kClear = 5, kVariance = 15, kLeast = 0.5;  ///< standard deviations; of a cube; of that of counts
   if (!(skew.squares > 0)) return false;
-  const double variance = skew.squares / skew.count;
-  return std::abs(skew.cubes) > kClear * std::sqrt(kVariance * skew.count) * variance * std::sqrt(variance);
+  const double sd = std::sqrt(skew.squares / skew.count), cube = std::abs(skew.cubes) / (sd * sd * sd);
+  return cube > kClear * std::sqrt(kVariance * skew.count) && cube > kLeast * step / sd * skew.count;
 }
 
 /// zeros over what the steps next to them lead to expect, where that is the doubled one of truncation.
@@ -230,7 +232,7 @@ DigitalFaults find_digital_faults(const DigitalSums& sums, const ValueCensus& ce
   if (step && !faults.held && census.repeats >= kFewestRepeats)
     faults.staircase = staircase(static_cast<double>(census.repeats) / sums.present, *step);
   if (step && !faults.held) faults.rounding = rounding_noise(census, sums.present, faults.staircase, *step);
-  if (faults.rounding) faults.rounding->of_counts = is_skewed(sums.skew);
+  if (faults.rounding) faults.rounding->of_counts = is_skewed(sums.skew, *step);
   // A staircase may stand on its last step for long.
   if (!faults.staircase) {
     if (sums.low.count > 0 && sums.low.value == census.low)
