@@ -9,6 +9,7 @@
 #include "libchar/core/numeric/moments.hpp"
 #include "libchar/core/text/readable.hpp"
 #include "libchar/core/text/text.hpp"
+#include "libchar/fit/detail/curve/coefficients.hpp"
 
 namespace libchar {
 
@@ -114,6 +115,28 @@ const Remedy* find_remedy(const NoiseFit& fit, std::string_view kind) {
   const auto found =
       std::find_if(fit.remedies.begin(), fit.remedies.end(), [&](const Remedy& r) { return r.kind == kind; });
   return found == fit.remedies.end() ? nullptr : &*found;
+}
+
+// Draws of what is there say nothing new, and a bootstrap of many follows the noise less well: a coefficient is then
+// known to a twentieth of their share at best.
+void detail::doubt_bridged(double share, NoiseFit& fit) {
+  constexpr double kHarmless = 0.05, kSd = 0.05, kMost = 0.4;
+  if (!(share > kHarmless)) return;
+  bool doubted = false;
+  for (Coefficient& term : fit.term) {
+    if (!term.value) continue;
+    widen_by(kSd * share, term);
+    if (!(share > kMost) || term.status != Status::detected) continue;
+    term.status = Status::undetermined;
+    doubted = true;
+  }
+  if (doubted)
+    fit.findings.push_back(
+        finding("undetermined",
+                fmt::format("{} of the readings of the phase are missing: the coefficients are those "
+                            "of a phase that was filled.",
+                            percent_text(share)),
+                "the coefficients are those of a phase that was filled"));
 }
 
 }  // namespace libchar

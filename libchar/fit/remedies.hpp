@@ -45,8 +45,10 @@ Remedy lines_remedy(std::uint64_t clipped);
 namespace detail {
 /// Fills missing readings of a clock's phase with draws of what is around. A rate across a missing reading is not a
 /// missing rate: the phase goes on from where it was. Up to three quarters of the readings are filled, in runs of up to
-/// an eighth of the record. In place; how many were filled.
-std::size_t bridge_phase(std::vector<double>& phase);
+/// an eighth of the record. In place.
+void bridge_phase(std::vector<double>& phase);
+/// What a fit knows where `share` of the readings were missing.
+void doubt_bridged(double share, NoiseFit& fit);
 /// Standard deviation of the kurtosis of first differences of white noise.
 double kurtosis_sd(std::uint64_t samples);
 /// The finding about lines that were left out. `in_allan`: the Allan curve has them, and disagrees.

@@ -123,6 +123,29 @@ TEST_CASE("missing readings of a phase leave the Allan curve and the fit where t
   }
 }
 
+TEST_CASE(
+    "the coefficients of a filled phase know of it: wider with a third missing, undetermined with more than half") {
+  CharacterizeOptions options;
+  options.data = SampleKind::phase;
+  int held = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed)
+    for (const double share : {0.3, 0.6}) {
+      test::Gaussian normal(seed);
+      std::vector<double> x(10000);
+      double walk = 0;
+      for (double& reading : x) reading = 3 * normal() + (walk += normal());
+      for (std::size_t t = 1; t + 1 < x.size(); ++t)
+        if (normal.uniform() < share) x[t] = std::nan("");
+      const ChannelResult result = characterize(recording_of({x}, 1), options).channels[0];
+      CAPTURE(seed, share);
+      REQUIRE(result.fit);
+      const Coefficient& q = (*result.fit)[Term::quantization];
+      if (share < 0.5) held += q.ci95.low <= 3 && q.ci95.high >= 3 ? 1 : 0;
+      if (share > 0.5) CHECK(q.status != Status::detected);
+    }
+  CHECK(held >= 10);
+}
+
 TEST_CASE("a counter gets curves and no fit, and the reason is said") {
   std::vector<double> index(5000), modulo(5000);
   for (std::size_t t = 0; t < index.size(); ++t) {

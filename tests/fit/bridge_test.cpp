@@ -1,6 +1,7 @@
 // Short runs of missing samples are filled with what could have stood there.
 #include "libchar/fit/detail/band/bridge.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -60,18 +61,18 @@ TEST_CASE("a phase is bridged where it was, however far its frequency is off") {
   for (std::size_t t = 0; t < walk.size(); ++t) walk[t] = 1e4 * static_cast<double>(t) + (level += gauss());
   for (const std::size_t run : {std::size_t{1}, std::size_t{12}, std::size_t{700}}) {
     Record phase = with_missing(walk, 0.1, run, 4);
-    std::size_t missing = 0;
-    for (const double value : phase) missing += std::isnan(value);
-    CHECK(detail::bridge_phase(phase) == missing);
+    detail::bridge_phase(phase);
+    CHECK(std::none_of(phase.begin(), phase.end(), [](double value) { return std::isnan(value); }));
     double square = 0;
     for (std::size_t t = 1; t < phase.size(); ++t) square += std::pow(phase[t] - phase[t - 1] - 1e4, 2);
     INFO(run);
     CHECK(square / static_cast<double>(phase.size() - 1) == Approx(1).epsilon(0.06));
   }
   Record mostly = with_missing(walk, 0.9, 1, 4);
-  CHECK(detail::bridge_phase(mostly) == 0);
+  detail::bridge_phase(mostly);
+  CHECK(std::any_of(mostly.begin(), mostly.end(), [](double value) { return std::isnan(value); }));
   Record none = walk;
-  CHECK(detail::bridge_phase(none) == 0);
+  detail::bridge_phase(none);
   CHECK(none == walk);
 }
 

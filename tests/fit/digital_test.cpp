@@ -193,16 +193,25 @@ TEST_CASE("a counter of coarse steps hides what a clock does between its reading
   CHECK(said(9900, std::nullopt).empty());
 }
 
+namespace {
+
+NoiseFit white_fit(double value, double relative_sd, Interval ci95) {
+  NoiseFit fit;
+  fit.rate_hz = 1;
+  Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
+  white.status = Status::detected;
+  white.value = value;
+  white.relative_sd = relative_sd;
+  white.ci95 = ci95;
+  fit.theta[static_cast<std::size_t>(Term::white)] = value * value;
+  return fit;
+}
+
+}  // namespace
+
 TEST_CASE("digital: rounding hides white noise only where it is a part of it") {
   const auto after = [](double variance) {
-    NoiseFit fit;
-    fit.rate_hz = 1;
-    Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
-    white.status = Status::detected;
-    white.value = 0.1;
-    white.relative_sd = 0.3;
-    white.ci95 = {0, 0.2};
-    fit.theta[static_cast<std::size_t>(Term::white)] = 0.01;
+    NoiseFit fit = white_fit(0.1, 0.3, {0, 0.2});
     detail::take_out_rounding({1e-5, variance, 0, false}, fit);
     return fit[Term::white];
   };
@@ -213,14 +222,9 @@ TEST_CASE("digital: rounding hides white noise only where it is a part of it") {
 }
 
 TEST_CASE("digital: of counts no rounding is taken out, and the interval holds N without it") {
-  NoiseFit fit;
-  fit.rate_hz = 1;
-  Coefficient& white = fit.term[static_cast<std::size_t>(Term::white)];
-  white.status = Status::detected;
-  white.value = 2;
-  white.relative_sd = 0.005;
-  white.ci95 = {1.98, 2.02};
+  NoiseFit fit = white_fit(2, 0.005, {1.98, 2.02});
   detail::take_out_rounding({1, 1.0 / 12, 0, true}, fit);
+  const Coefficient white = fit[Term::white];
   CHECK(*white.value == 2);
   CHECK(white.ci95.low == Approx(std::sqrt(1.98 * 1.98 - 1.0 / 12)));
   CHECK(white.ci95.high == 2.02);

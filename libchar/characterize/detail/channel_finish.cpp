@@ -115,7 +115,6 @@ class Finish {
   double phase_factor_ = 1;   ///< of its unit, to fractional frequency
   std::vector<double> kept_;  ///< as a rate: all samples, or none
   DespikedRecord despiked_;   ///< rate of the phase without its spikes, when it has some
-  std::size_t filled_ = 0;    ///< readings of the phase that were missing
   std::vector<NoiseType> noise_types_;
   std::vector<AllanPoint> between_;    ///< octaves, for the plot: of the same sums
   std::optional<EventSeries> series_;  ///< where the search for motion has made it
@@ -141,7 +140,7 @@ void Finish::make_rate(double rate_hz) {
   }
   if (options_.fit.remedies && wants_fit() && is_whole()) despiked_ = without_spikes(kept_);
   detail::bridge_phase(despiked_.samples);
-  filled_ = detail::bridge_phase(kept_);
+  detail::bridge_phase(kept_);
   const double per_s = rate_hz * phase_factor_;
   if (!is_whole()) scale_sums(per_s);
   noise_types_ = noise_types(rate_hz);
@@ -215,9 +214,10 @@ AllanCurve Finish::wanted_curve(const AllanCurve& octaves, DeviationType type, d
 
 void Finish::add_curves(const AllanCurve& octaves, double rate_hz, ChannelResult& result) const {
   attempt(result, "Allan deviation", [&] { result.allan = wanted_curve(octaves, options_.allan.type, rate_hz); });
-  if (filled_ > 0)
-    result.allan.notes.push_back(plural(filled_, "missing reading") +
-                                 " of the phase filled with a draw of what those around allow");
+  if (options_.data == SampleKind::phase && found_.missing > 0)
+    result.allan.notes.push_back(
+        plural(found_.missing, "missing reading") +
+        " of the phase: filled with draws of what those around allow, but for the longest gaps");
   for (const DeviationType type : options_.more_types) {
     result.more_allan.push_back({});
     result.more_allan.back().type = type;
@@ -333,6 +333,9 @@ void Finish::fit(const AllanCurve& octaves, double rate_hz, ChannelResult& resul
         result.fit->moving_s = result.motion.moving_s;
         if (result.digital.rounding) detail::take_out_rounding(*result.digital.rounding, *result.fit);
         doubt_digital(result.digital, *result.fit);
+        if (options_.data == SampleKind::phase)
+          detail::doubt_bridged(
+              static_cast<double>(found_.missing) / static_cast<double>(found_.samples + found_.missing), *result.fit);
       },
       "no_fit");
 }

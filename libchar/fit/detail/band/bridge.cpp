@@ -190,9 +190,9 @@ static double width_of_noise(std::span<const double> phase) {
   return kFar * of_phase / std::max(first - 2 * of_phase, kLeastShare * first);
 }
 
-std::size_t detail::bridge_phase(std::vector<double>& phase) {
+void detail::bridge_phase(std::vector<double>& phase) {
   const std::vector<MissingRun> runs = short_runs(phase, phase.size() / kLongestOfPhase, kMostOfPhase);
-  if (runs.empty()) return 0;
+  if (runs.empty()) return;
   const auto is_there = [](double value) { return !std::isnan(value); };
   const auto first = std::find_if(phase.begin(), phase.end(), is_there) - phase.begin();
   const auto last = phase.rend() - std::find_if(phase.rbegin(), phase.rend(), is_there) - 1;
@@ -207,7 +207,6 @@ std::size_t detail::bridge_phase(std::vector<double>& phase) {
   std::vector<double> filled = level;
   const double width = width_of_noise(level);
   Bridge bridge(level);
-  std::size_t count = 0;
   for (const MissingRun& run : runs) {
     const std::size_t length = run.end - run.first;
     const bool walks = length > 1 && static_cast<double>(length) > width;
@@ -217,9 +216,7 @@ std::size_t detail::bridge_phase(std::vector<double>& phase) {
       if (!whole && !bridge.fill({t, t + 1}, filled)) filled[t] = bridge.expected(t);
       phase[t] = filled[t] + line(t);
     }
-    count += run.end - run.first;
   }
-  return count;
 }
 
 }  // namespace libchar
