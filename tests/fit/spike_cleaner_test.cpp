@@ -243,6 +243,29 @@ TEST_CASE("noise of other kinds has no spikes") {
   }
 }
 
+// A phase that jumps by 20 sd of its readings is a single spike of 14 sd in a clock's rates.
+TEST_CASE("a single spike among Gaussian differences is one, whatever its size") {
+  for (const double size : {12.0, 18.0})
+    for (const bool clock : {false, true}) {
+      int called = 0;
+      double sum = 0;
+      constexpr int kRecords = 40;
+      for (std::uint64_t seed = 1; seed <= kRecords; ++seed) {
+        Record y = white(3001, seed);
+        if (clock)
+          for (std::size_t t = 0; t + 1 < y.size(); ++t) y[t] = (y[t + 1] - y[t]) / std::sqrt(2.0);
+        y[1500] = size;
+        y.pop_back();
+        const DespikedRecord found = without_spikes(y);
+        called += found.answer.remedy.has_value();
+        if (!clock) sum += fit_record(y, 1, nullptr)[Term::white].value.value();
+      }
+      INFO(size << (clock ? " of a clock" : ""));
+      CHECK(called >= kRecords * 9 / 10);
+      if (!clock) CHECK(sum / kRecords == Approx(1).epsilon(0.01));
+    }
+}
+
 TEST_CASE("heavy tails are said to be tails, and nothing is left out") {
   const Record y = student(200000, 7, 5);
   FitOptions options;

@@ -10,8 +10,9 @@
 // P(size > x) ~ (x/5 s)^-a the logarithms ln(size/5 s) are exponential with mean 1/a (Hill 1975), so that 2.5 * their
 // sum exceeds the 97 % quantile of a gamma distribution in at most 3 % of records with a >= 2.5; and at least a third
 // lies between 5 s and 6 s (0.42 for a = 3, the t distribution of three degrees of freedom). Spikes are what
-// contradicts one of the two. Where more jumps stay than come back the signal itself jumps (telegraph noise), and short
-// stays are no runs of wild rows.
+// contradicts one of the two. A single spike of less than 20 s contradicts neither: it is one where all other
+// differences are Gaussian, in the core and in their variance, and many enough for a tail to show there. Where more
+// jumps stay than come back the signal itself jumps (telegraph noise), and short stays are no runs of wild rows.
 #include "libchar/fit/signs/spike_cleaner.hpp"
 
 #include <fmt/format.h>
@@ -39,6 +40,11 @@ constexpr double kMostShare = 0.01;
 constexpr double kTail = 2.5;              // index of the heaviest tail that is taken for noise
 constexpr double kTailShoulder = 1.0 / 3;  // of such a tail at least
 constexpr double kTailAlarm = 0.03, kShoulderAlarm = 0.01;
+// Standard deviations of ln(far / all) and of ln(near / far) of Gaussian differences, times the root of their count.
+constexpr double kAll = 1.7, kCore = 4.6;
+constexpr double kSure = 4;             // of such standard deviations
+constexpr double kMostOfTails = 2;      // excess of a Gaussian record, in standard deviations
+constexpr double kShowsItsTail = 1500;  // differences
 
 /// Robust standard deviation of what is not zero. Zero is what rounding leaves of it.
 double spread_of(std::vector<double> size, double largest) {
@@ -54,6 +60,14 @@ double spread_of(std::vector<double> size, double largest) {
 void halve(std::vector<double>& values) {
   for (std::size_t i = 0; 2 * i < values.size(); ++i) values[i] = values[2 * i];
   values.resize((values.size() + 1) / 2);
+}
+
+/// ln(all / far) in its standard deviations of Gaussian differences.
+double excess_of(const detail::CoreSums& sums) { return std::log(sums.all / sums.far) * std::sqrt(sums.count) / kAll; }
+
+bool has_gaussian_core(const detail::CoreSums& sums) {
+  constexpr double kFlat = 0.01;
+  return std::abs(std::log(sums.near / sums.far)) <= kSure * kCore / std::sqrt(sums.count) + kFlat;
 }
 
 }  // namespace
@@ -106,9 +120,12 @@ SpikeVerdict judge_spikes(const SpikeCount& count) {
   if (count.steps > count.spikes) return SpikeVerdict::heavy_tails;  // a signal that jumps
   const auto events = static_cast<double>(count.spikes + count.shoulder);
   if (chi_square_tail(2 * kTail * count.log_size, 2 * events) < kTailAlarm) return SpikeVerdict::spikes;
-  return binomial_cdf(static_cast<double>(count.shoulder), events, kTailShoulder) < kShoulderAlarm
-             ? SpikeVerdict::spikes
-             : SpikeVerdict::heavy_tails;
+  if (binomial_cdf(static_cast<double>(count.shoulder), events, kTailShoulder) < kShoulderAlarm)
+    return SpikeVerdict::spikes;
+  const detail::CoreSums& rest = count.without;
+  const bool gaussian = count.shoulder == 0 && rest.count > kShowsItsTail && rest.far > 0 && has_gaussian_core(rest) &&
+                        excess_of(rest) < kMostOfTails;
+  return gaussian ? SpikeVerdict::spikes : SpikeVerdict::heavy_tails;
 }
 
 }  // namespace libchar
@@ -200,15 +217,12 @@ CoreSums core_sums(std::span<const double> record) {
 }
 
 std::optional<OutlierVariance> outlier_variance(const CoreSums& sums, bool expected) {
-  // Standard deviations of ln(far / all) and of ln(near / far) of Gaussian differences, times the root of their count.
-  constexpr double kAll = 1.7, kCore = 4.6, kSure = 4, kExpected = 0.5, kFlat = 0.01;
+  constexpr double kExpected = 0.5;
   if (!(sums.count > 0) || !(sums.far > 0)) return std::nullopt;
-  const double root = std::sqrt(sums.count);
-  const double excess = std::log(sums.all / sums.far) * root / kAll;
-  if (!(excess > (expected ? kExpected : kSure))) return std::nullopt;
-  if (std::abs(std::log(sums.near / sums.far)) > kSure * kCore / root + kFlat) return std::nullopt;
-  return OutlierVariance{(sums.all - sums.far) / sums.count / 2, kAll * sums.far / sums.count / 2 / root,
-                         excess > kSure};
+  const double excess = excess_of(sums);
+  if (!(excess > (expected ? kExpected : kSure)) || !has_gaussian_core(sums)) return std::nullopt;
+  return OutlierVariance{(sums.all - sums.far) / sums.count / 2,
+                         kAll * sums.far / sums.count / 2 / std::sqrt(sums.count), excess > kSure};
 }
 
 }  // namespace libchar::detail
