@@ -110,7 +110,7 @@ std::optional<Trial> tried(const std::vector<PowerBin>& bins, double rate_hz, Te
   Trial trial;
   trial.band = band;
   trial.index = members(bins, band);
-  if (trial.index.size() < kFewestBins) return std::nullopt;
+  if (trial.index.size() < kFewestBins || unknowns_of(band) > std::size_t{kMostShape}) return std::nullopt;
   if (band.quantized) terms[kQuantizationTerm] = true;
   if (band.tau_s) terms[kLentTerm] = true;
   if (band.faster_s) terms[kQuantizationTerm] = true;
@@ -460,7 +460,6 @@ struct Search {
     std::optional<Trial> best;
     for (const bool unlike : {false, true}) {
       for (Resonance& resonance : band.resonances) resonance.unlike = unlike;
-      if (unknowns_of(band) > static_cast<std::size_t>(kMostShape)) break;
       const std::optional<Trial> like = best;
       for (const double factor : {0.25, 0.5, 1.0, 2.0, 4.0}) {
         Band scaled = band;
@@ -497,7 +496,7 @@ struct Search {
     const std::size_t fewest = bins.size() - bins.size() / kMostLeftOut;
     const std::optional<Trial> bare = at(band);
     const auto holes = holes_of(band, order);
-    if (!bare || holes.size() > static_cast<std::size_t>(kMostShape)) return std::nullopt;
+    if (!bare) return std::nullopt;
     for (const auto& [from, to] : holes) {
       const auto first = order.begin() + static_cast<std::ptrdiff_t>(from);
       const auto found = resonance_in({first, first + static_cast<std::ptrdiff_t>(to - from)}, bare->theta);
@@ -599,7 +598,7 @@ struct Search {
     const bool whole = band.top_hz > rate_hz / 2 * 0.99;
     if (whole && band.orders == 0) return band;
     const auto with_orders = [&](Band next, int more) {
-      next.orders += more;
+      next.orders = std::min(next.orders + more, kMostShape - static_cast<int>(unknowns_of(next.resonances)));
       return at(next);
     };
     std::optional<Trial> best = at(band);
