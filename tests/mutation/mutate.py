@@ -32,13 +32,14 @@ import sys
 import tempfile
 import time
 
-from sites import mutants
-from targets import USERS
-
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "builds"))
+from relinked import ARCHIVES, link_words  # noqa: E402
+from sites import mutants  # noqa: E402
+from targets import USERS  # noqa: E402
+
 ROOT = HERE.parent.parent
 LIBRARY = ROOT / "build-mutation"
-ARCHIVES = ("libchar.a", "libcharcurves.a")
 # Without inlining a function into others of its piece, and without what the compiler concludes of its body there.
 FLAGS = "-O1 -fPIC -fsemantic-interposition -D_GLIBCXX_ASSERTIONS -w"
 
@@ -107,12 +108,7 @@ def build_library():
 def link_command(build, floor, scratch):
     """The command that links a floor's tests with the library to break, whose functions a mutant before it replaces;
     OBJECT and PROGRAM are to be replaced. Objects are copied: `build` may be built again while this runs."""
-    commands = run(["ninja", "-C", str(build), "-t", "commands", f"tests/test_{floor}"]).stdout.strip().split("\n")
-    words = shlex.split(re.sub(r"^: && | && (?:cd .*|:)$", "", commands[-1]))
-    words[words.index("-o") + 1] = "PROGRAM"
-    first = next(i for i, word in enumerate(words) if word.startswith("libchar/"))
-    words = [word for word in words if not word.startswith("libchar/")]
-    words[first:first] = ["-Wl,--start-group", *(str(LIBRARY / "libchar" / a) for a in ARCHIVES), "-Wl,--end-group"]
+    words = link_words(build, f"tests/test_{floor}", LIBRARY)
     objects = [i for i, word in enumerate(words) if word.endswith(".o")]
     for i in objects:
         words[i] = shutil.copy(build / words[i], scratch / f"{floor}_{i}.o")

@@ -59,16 +59,21 @@ double event_mean(std::span<const Event> events, double rate_hz, double first, d
   return sum;
 }
 
+std::string detail::place_and_interval(double at_s, const Interval& ci95) {
+  const std::string low = place_text(ci95.low), high = place_text(ci95.high);
+  return fmt::format("{} s{}", place_text(at_s), low == high ? "" : fmt::format(" (between {} and {} s)", low, high));
+}
+
 std::string event_sentence(const Event& event, std::string_view unit) {
   const double relative = event.sd / std::max(std::abs(event.size), 1e-300);
   const std::string size = fmt::format("{}{}{}", detail::plus_minus_text(event.size, kNormal95 * event.sd),
                                        unit.empty() ? "" : " ", detail::usual_unit(std::string(unit)));
   std::string text;
   if (event.kind == EventKind::step)
-    text = event.in_gap ? fmt::format("A step of {} while nothing was recorded, between {} and {} s", size,
-                                      place_text(event.at_ci95.low), place_text(event.at_ci95.high))
-                        : fmt::format("A step of {} at {} s (between {} and {} s)", size, place_text(event.at_s),
-                                      place_text(event.at_ci95.low), place_text(event.at_ci95.high));
+    text = event.in_gap
+               ? fmt::format("A step of {} while nothing was recorded, between {} and {} s", size,
+                             place_text(event.at_ci95.low), place_text(event.at_ci95.high))
+               : fmt::format("A step of {} at {}", size, detail::place_and_interval(event.at_s, event.at_ci95));
   if (event.kind == EventKind::warm_up)
     text = event.tau_ci95.high > 0 || !(event.tau_ci95.low > 0)
                ? fmt::format("A warm-up of {} with a time constant of {}", size, duration_text(event.tau_s))

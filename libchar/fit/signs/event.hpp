@@ -43,6 +43,10 @@ double event_mean(std::span<const Event> events, double rate_hz, double first, d
 
 /// "A step of 0.125 ± 0.004 deg/s at 740 s (between 739.8 and 740.3 s)."
 std::string event_sentence(const Event& event, std::string_view unit);
+namespace detail {
+/// "33.3 s (between 33.1 and 33.5 s)": without the interval where its ends read alike.
+std::string place_and_interval(double at_s, const Interval& ci95);
+}  // namespace detail
 
 // A record as means of many samples, for searches that look at all of it.
 

@@ -294,8 +294,7 @@ std::string change_sentence(const StrengthChange& change) {
       fmt::format("{} times as strong ({} to {})", number_text(change.factor, 3),
                   number_text(change.factor_ci95.low, 3), number_text(change.factor_ci95.high, 3));
   if (change.kind == EventKind::step)
-    return fmt::format("The noise is {} from {} s on (between {} and {} s).", factor, place_text(change.at_s),
-                       place_text(change.at_ci95.low), place_text(change.at_ci95.high));
+    return fmt::format("The noise is {} from {} on.", factor, detail::place_and_interval(change.at_s, change.at_ci95));
   if (change.kind == EventKind::ramp)
     return fmt::format("The noise changes little by little: at the end it is {}.", factor);
   return fmt::format("The noise settles: at the beginning it is {}.", factor);
