@@ -512,12 +512,13 @@ TEST_CASE("events: sessions of any length have offsets that can be told, also th
 }
 
 TEST_CASE("events: an interval whose ends read alike is not written") {
-  Event step{EventKind::step};
+  Event step;
+  step.kind = EventKind::step;
   step.size = 3;
   step.sd = 0.01;
   step.at_s = 33.33;
   step.at_ci95 = {33.33, 33.33};
-  CHECK(event_sentence(step, "V") == "A step of 3 ± 0.02 V at 33.33 s.");
+  CHECK(event_sentence(step, "V") == "A step of 3.000 ± 0.020 V at 33.33 s.");
   step.at_ci95.high = 33.4;
-  CHECK(event_sentence(step, "V") == "A step of 3 ± 0.02 V at 33.33 s (between 33.33 and 33.4 s).");
+  CHECK(event_sentence(step, "V") == "A step of 3.000 ± 0.020 V at 33.33 s (between 33.33 and 33.4 s).");
 }
