@@ -440,8 +440,8 @@ void Fusing::take(const Eigen::MatrixXd& samples, ColumnSink& sink) {
       const auto at = static_cast<Eigen::Index>(k);
       const double x = x_(j, at);
       double sd = stated(j, variance_(j, at), all.col(at));
+      if (doubt != nullptr && (*doubt)[k].any()) sd = std::sqrt((*doubt)[k].of(sd * sd));
       sd = learnt_.inputs[static_cast<std::size_t>(j)].with_common(sd, x);
-      if (doubt != nullptr && (*doubt)[k].more > 0) sd = std::sqrt((*doubt)[k].of(sd * sd));
       out_[static_cast<std::size_t>(j)][k] = std::isfinite(x) ? x : kMissing;
       out_[r + static_cast<std::size_t>(j)][k] = std::isfinite(x) && std::isfinite(sd) ? sd : kMissing;
     }
@@ -477,7 +477,7 @@ void Fusing::begin_check() {
   if (array.one_common_input() && array.channels >= 2) {
     check_.readings.emplace(array.channels, instants_->info().count);
     check_.readings->expect(learnt_readings());
-    check_.doubt.emplace(learnt_readings());
+    check_.doubt.emplace(learnt_readings(), algorithm_.usual);
   }
   check_.steps.emplace(h(check_.rows, Eigen::indexing::all), instants_->info().count);
   // The sum of two sensors' noises is comparable only where the same two are there.

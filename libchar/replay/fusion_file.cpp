@@ -62,6 +62,14 @@ const Fields<LearntAlignment> kLearntAlignmentFields = {
 };
 
 // One sensor may be the median at nearly every instant: zeros are written too.
+const Fields<LearntAlgorithm::Usual> kLearntUsualFields = always(Fields<LearntAlgorithm::Usual>{
+    field<&LearntAlgorithm::Usual::distance>(
+        "distance", {.range = kNotNegative,
+                     .meaning = "RMS, of the estimates from the sensors' mean, weighted by their usual scatter"}),
+    field<&LearntAlgorithm::Usual::sd>(
+        "sd", {.range = kNotNegative, .meaning = "standard deviation, in the better quarter; 0: not known"}),
+});
+
 const Fields<LearntSensor::Reading> kLearntReadingFields = always(Fields<LearntSensor::Reading>{
     field<&LearntSensor::Reading::offset>("offset", {.meaning = "in units of the input"}),
     field<&LearntSensor::Reading::gain>("gain", {.meaning = "beyond one"}),
@@ -306,6 +314,10 @@ const Fields<LearntAlgorithm>& fusion_algorithm_fields() {
       field<&LearntAlgorithm::sd>(
           "sd", {.meaning = "of each input, of a method that states no deviation: the RMS error of the replay",
                  .otherwise = "not known"}),
+      maybe_part<&LearntAlgorithm::usual>(
+          "usual", kLearntUsualFields,
+          {.meaning = "while all sensors read as they usually do: what is expected where one does not",
+           .form = Entry::Form::flow}),
       custom<LearntAlgorithm, read_learnt, write_learnt>("learnt", "map of lists of numbers",
                                                          {.meaning = "from the reference"}),
   };

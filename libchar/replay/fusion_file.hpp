@@ -60,11 +60,17 @@ struct LearntInput : detail::CommonErrors {
 };
 
 struct LearntAlgorithm {
+  /// While all sensors read as they usually do (detail/sensor_doubt.hpp).
+  struct Usual {
+    double distance = 0;  ///< RMS, of the estimates from the mean of the sensors by their usual scatter
+    double sd = 0;        ///< standard deviation: what it is in the better quarter; 0: not known
+  };
   std::string label, name;
   std::vector<std::pair<std::string, double>> options;  ///< all of them, as used
   fusion::Learnt learnt;
   std::vector<double> sd_factor;  ///< of each input: times the stated deviation it covered 95 % of the replay
   std::vector<double> sd;         ///< of one that states none: RMS error of each input in the replay
+  std::optional<Usual> usual;     ///< of one input that all sensors see alike
   std::string refused;            ///< why it cannot be applied, a sentence; empty: it can
   int line = 0, column = 0;       ///< in the file it was read from
 };

@@ -26,6 +26,7 @@
 #include "libchar/replay/detail/plan/sensor_words.hpp"
 #include "libchar/replay/detail/plan/step_noise.hpp"
 #include "libchar/replay/detail/plan/tilt_check.hpp"
+#include "libchar/replay/detail/sensor_doubt.hpp"
 #include "libchar/replay/detail/tracks/run_tracks.hpp"
 #include "libchar/replay/view/ranking.hpp"
 
@@ -310,6 +311,7 @@ class Replay {
     if (workspace_.estimates != nullptr) begin_estimates();
     const fusion::Array live = subset(plan_.array, plan_.live);
     if (plan_.array.tilt) watch_.tilt.emplace(*plan_.array.tilt, instants_.info().rate_hz);
+    watch_.when.set_length(frame_.instants);
     if (!scene_.tilt) watch_.steps.emplace(live.h(), plan_.run_to - plan_.run_from);
     if (!scene_.tilt) detection_.emplace(plan_, instants_.source().known_faults());
     const auto blocks = static_cast<std::size_t>(plan_.run_to - plan_.run_from) / plan_.block + 1;
@@ -327,8 +329,17 @@ class Replay {
       tracker_.push(done, b.samples, b.truth, runs_);
       if (detection_) detection_->push(b.samples);
       watch_sensors(b.samples, b.truth);
+      if (watch_.readings) note_samples(done, b.samples, skip);
       if (workspace_.estimates != nullptr) give_estimates(b);
       if (blocks < kLeastTimed) kept_.push_back(b.samples);
+    });
+  }
+
+  // Where the runs note their estimates.
+  void note_samples(std::int64_t done, const Eigen::MatrixXd& samples, Eigen::Index skip) {
+    with_live(samples, [&](const auto& live) {
+      for (Eigen::Index k = skip; k < live.cols(); ++k)
+        if (watch_.when.notes(done + k)) watch_.noted.emplace_back(live.col(k));
     });
   }
 
@@ -423,6 +434,7 @@ class Replay {
     Meters meters;
   };
   void tell_readings(ReplayResult& out) const;
+  void note_deviations(const ReplayResult& out);
   ReplayResult collect();
   void refuse_sizes() const;
   void add_facts(ReplayResult& out) const;
@@ -449,6 +461,8 @@ class Replay {
     std::optional<detail::ReadingMeter> readings, beside_truth;
     std::optional<detail::ReadingMeter> with_truth;  // of two sensors and the reference
     std::optional<detail::TiltCheck> tilt;
+    detail::UsualEstimates when;
+    std::vector<Eigen::VectorXd> noted;  // samples at its instants
   } watch_;
   std::optional<DetectionSweep> detection_;
   RunFrame frame_, optimum_frame_;
@@ -626,6 +640,21 @@ std::vector<double> rms_errors(const AlgorithmResult& algorithm) {
   return out.size() == algorithm.inputs.size() ? out : std::vector<double>();
 }
 
+// What each method's estimates are off, and what they usually are beside the sensors.
+void Replay::note_deviations(const ReplayResult& out) {
+  const detail::ReadingMeter::Readings readings =
+      watch_.readings ? watch_.readings->learnt() : detail::ReadingMeter::Readings();
+  for (const AlgorithmRun& run : runs_)
+    for (LearntAlgorithm& algorithm : learnt_.algorithms) {
+      if (!run.planned().asked || algorithm.label != run.planned().label) continue;
+      algorithm.sd_factor = run.sd_factor();
+      if (algorithm.sd_factor.empty()) algorithm.sd = rms_errors(*out.find(algorithm.label));
+      const double factor = algorithm.sd_factor.empty() ? 1 : algorithm.sd_factor[0];
+      if (readings.size() > 2) algorithm.usual = run.usual().result(readings, watch_.noted, factor);
+      if (algorithm.usual && algorithm.usual->sd == 0 && !algorithm.sd.empty()) algorithm.usual->sd = algorithm.sd[0];
+    }
+}
+
 // What the methods that are recommended say of themselves is about the verdict.
 void add_doubts_of_chosen(ReplayResult& out) {
   for (std::size_t i = 0; i < out.algorithms.size(); ++i) {
@@ -695,12 +724,7 @@ ReplayResult Replay::collect() {
   add_tracks(out);
   if (detection_) out.detection = detection_->result(out.start_s, out.rate_hz, out.end_s());
   if (watch_.steps) note_step_noise(watch_.steps->result(), learnt_);
-  for (const AlgorithmRun& run : runs_)
-    for (LearntAlgorithm& algorithm : learnt_.algorithms) {
-      if (!run.planned().asked || algorithm.label != run.planned().label) continue;
-      algorithm.sd_factor = run.sd_factor();
-      if (algorithm.sd_factor.empty()) algorithm.sd = rms_errors(*out.find(algorithm.label));
-    }
+  note_deviations(out);
   out.learnt = learnt_;
   doubt_offset(out);
   add_doubts_of_chosen(out);

@@ -442,6 +442,38 @@ TEST_CASE("fuse: a sensor that failed is in the standard deviation where it does
   CHECK(sound.push(Eigen::MatrixXd::Zero(3, 3000), estimates)[2999].more == 0);
 }
 
+TEST_CASE("fuse: a sensor that fails puts no sound one in doubt, and no usual distance in the standard deviation") {
+  // Of three, four and six one fails: the median moves with it. The estimate follows the past too, off by its noise.
+  for (const Eigen::Index n : {3, 4, 6}) {
+    INFO(n);
+    test::Gaussian gauss(5);
+    const LearntSensor::Reading reading{0, 0, 0.01, 0.1};
+    const detail::Readings readings(static_cast<std::size_t>(n), reading);
+    const double sd = 0.1 / std::sqrt(static_cast<double>(n));
+    Eigen::MatrixXd y(n, 6000);
+    for (double& one : y.reshaped()) one = 0.1 * gauss();
+    detail::UsualEstimates usual;
+    std::vector<Eigen::VectorXd> samples;
+    for (Eigen::Index k = 0; k < 500; ++k) {
+      usual.note(0.5 * y.col(k).mean(), 0.25 * sd * sd);
+      samples.emplace_back(y.col(k));
+    }
+    const auto found = usual.result(readings, samples, 1);
+    REQUIRE(found);
+    CHECK(found->distance == Approx(0.5 * sd).epsilon(0.1));
+    CHECK(found->sd == Approx(0.5 * sd));
+    y.row(1).tail(5000).array() += 2;
+    detail::SensorDoubt doubt(readings, found);
+    const Eigen::VectorXd estimates = 0.5 * (y.colwise().sum() - y.row(1)).transpose() / static_cast<double>(n - 1);
+    const auto& variances = doubt.push(y, estimates);
+    double sum = 0;
+    for (std::size_t k = 2000; k < 6000; ++k) sum += variances[k].of(0.25 * sd * sd) / 4000;
+    const double left = 0.5 * 0.1 / std::sqrt(static_cast<double>(n - 1));
+    CHECK(std::sqrt(sum) >= 0.95 * left);
+    CHECK(std::sqrt(sum) <= 1.25 * left);
+  }
+}
+
 TEST_CASE(
     "fuse: where fewer than two sensors read as they were learnt to, any may be right in the standard deviation") {
   const LearntSensor::Reading reading{0, 0, 0.005, 0.05};

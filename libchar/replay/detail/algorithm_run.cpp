@@ -197,6 +197,7 @@ AlgorithmRun::AlgorithmRun(const PlannedAlgorithm& planned, const RunFrame& fram
   seen_.coverage.resize(inputs);
   if (frame.allan) allan_.resize(inputs);
   medians_.set_length(frame.instants);
+  seen_.usual.set_length(frame.instants);
   guarded([&] {
     runner_ = planned.entry->make(some_left_out() ? subset(*frame.array, *frame.live) : *frame.array, planned.settings);
   });
@@ -315,6 +316,8 @@ void AlgorithmRun::score(std::int64_t first, const Eigen::MatrixXd& truth, Eigen
   const Eigen::Index scored = x_.cols() - skip;
   seen_.available += static_cast<double>((x_.row(0).tail(scored).array().isFinite()).count());
   seen_.scored += static_cast<double>(scored);
+  for (Eigen::Index k = skip; k < x_.cols(); ++k)
+    if (seen_.usual.notes(first + k)) seen_.usual.note(x_(0, k), variance_(0, k));
   for (Eigen::Index j = 0; j < truth.rows(); ++j) {
     error_.resize(static_cast<std::size_t>(scored));
     for (Eigen::Index k = skip; k < x_.cols(); ++k) {

@@ -12,6 +12,7 @@
 #include "libchar/fusion/runner.hpp"
 #include "libchar/replay/detail/coverage_meter.hpp"
 #include "libchar/replay/detail/plan/plan.hpp"
+#include "libchar/replay/detail/sensor_doubt.hpp"
 #include "libchar/replay/fusion_file.hpp"
 
 namespace libchar {
@@ -92,6 +93,7 @@ class AlgorithmRun {
   std::optional<Eigen::VectorXd> variances() const;
   /// Of each input; empty: not known of all of them.
   std::vector<double> sd_factor() const;
+  const detail::UsualEstimates& usual() const { return seen_.usual; }
   std::uint64_t learnt() const { return learnt_; }
   std::uint64_t steps() const { return steps_; }
 
@@ -126,6 +128,7 @@ class AlgorithmRun {
   struct {
     double available = 0, scored = 0;
     std::vector<detail::CoverageMeter> coverage;  // of the stated deviation of each input
+    detail::UsualEstimates usual;
   } seen_;
   struct {
     std::int64_t held = 0, peak = 0;

@@ -11,6 +11,7 @@ constexpr double kSlow = 2048, kQuick = 32;         // instants of memory
 constexpr double kSettled = 1024;                   // instants before it may lead
 constexpr double kPastErrors = 3;                   // standard errors
 constexpr double kPays = 0.04, kPaysNoMore = 0.02;  // of the mean square error
+constexpr double kLeastLeft = 0.05;                 // of the variance
 constexpr double kPastSigmas = 4;                   // of an innovation
 constexpr int kPastCalm = 16;
 
@@ -75,7 +76,9 @@ bool PastNetwork::pays(double variance) {
                    kPastErrors * std::max(shared_[0].error(kSlow), shared_[1].error(kSlow));
   const double s = std::max(innovation_.mean, fast_.mean);
   gain_ = c > 0 && s > 0 ? std::min(1.0, c / s) : 0;
-  variance_ = std::max(variance - gain_ * c, 0.0);
+  // Of x - gain e: what it pays is judged by the lower limit, what it is by the middle. c is the variance itself.
+  const double shared = std::min((shared_[0].mean + shared_[1].mean) / 2, variance);
+  variance_ = std::max(variance - gain_ * (2 * shared - gain_ * std::max(s, variance)), kLeastLeft * variance);
   return innovation_.count >= kSettled && variance > 0 && gain_ * c > (leads_ ? kPaysNoMore : kPays) * variance;
 }
 
