@@ -179,6 +179,7 @@ class TimeGrid {
   Verdict backward(const Pending& front, std::size_t row, std::int64_t& stamp);
   [[noreturn]] void refuse_backward() const;
   void refuse_many_backward() const;
+  bool is_restart(std::int64_t stamp, const ClockWrap& wrap) const;
   void unwrap(const Pending& front, std::size_t row, const ClockWrap& wrap, std::int64_t& stamp);
   bool next_row(const Pending*& at, std::size_t& item, std::size_t& row) const;
   bool next_lies_before(const Pending& front, std::size_t row, std::int64_t stamp) const;
