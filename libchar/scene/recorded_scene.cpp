@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "libchar/core/file/log_files.hpp"
 #include "libchar/core/file/output_files.hpp"
 #include "libchar/core/refusal.hpp"
+#include "libchar/core/text/pattern.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/core/units.hpp"
 #include "libchar/log/channel_names.hpp"
@@ -27,15 +29,43 @@ std::string list_of(const std::vector<std::string>& names) {
                      shown < names.size() ? ", …" : "");
 }
 
-// Three axes are in one unit, too: only the caller knows which channels see one input.
-[[noreturn]] void ask_for_sensors(const SensorRecording& r) {
-  ReadOptions head = r.reading;
-  head.units.clear();
+// A name without the number that tells it from those of its kind: imu of imu2, nothing of a bare number or letter.
+std::string kind_of(std::string name) {
+  std::erase_if(name, [](char c) { return c >= '0' && c <= '9'; });
+  return name.size() > 1 ? name : "";
+}
+
+std::vector<std::string> names_at_head(const std::string& file, ReadOptions reading) {
+  reading.units.clear();
   std::vector<std::string> names;
-  for (const Channel& channel : read_log_head(r.file, head).channels) names.push_back(channel.name);
+  for (const Channel& channel : read_log_head(file, reading).channels) names.push_back(channel.name);
+  return names;
+}
+
+// What each source of a long table has.
+std::vector<std::string> columns_of_sources(const SensorRecording& r) {
+  ReadOptions reading = r.reading;
+  if (reading.kinds.group_by.empty()) return {};
+  reading.channels = {"!" + std::exchange(reading.kinds.group_by, "")};
+  return names_at_head(r.file, std::move(reading));
+}
+
+// Three axes are in one unit, too: only the caller knows which channels see one input. Sources that differ by a number
+// only and have one column each do.
+std::vector<std::string> sensors_or_ask(const SensorRecording& r) {
+  if (!r.sensors.empty()) return r.sensors;
+  const std::vector<std::string> names = names_at_head(r.file, r.reading), columns = columns_of_sources(r);
+  const std::string kind = kind_of(names.at(0));
+  if (columns.size() == 1 &&
+      std::all_of(names.begin(), names.end(), [&](const std::string& name) { return kind_of(name) == kind; }))
+    return {"*"};
+  std::string pattern = columns.empty() ? "gyro*" : columns.size() == 1 ? "*" : "*_" + columns[0];
+  const std::size_t field = is_pattern(r.reading.topic) ? names[0].rfind('/') : std::string::npos;
+  if (field != std::string::npos) pattern = "*" + names[0].substr(field);
   throw usage_error("E0749", "`sensors`")
       .says("which channels measure one quantity?")
-      .hint("{} has {}; patterns such as 'gyro*' name several", printable(r.file), printable(list_of(names)));
+      .hint("{} has {}; patterns such as '{}' name several", printable(r.file), printable(list_of(names)),
+            printable(pattern));
 }
 
 std::vector<std::string> together(const std::vector<std::vector<std::string>>& parts, const char* option) {
@@ -62,7 +92,8 @@ Chosen choose_columns(const SensorRecording& r) {
         together(channel_names(own_log ? r.reference_file : r.file, own_log ? ReadOptions{} : r.reading, r.reference),
                  "`reference`");
   out.sensors = together(
-      channel_names(r.file, r.reading, r.sensors, own_log ? std::vector<std::string>{} : out.reference), "`sensors`");
+      channel_names(r.file, r.reading, sensors_or_ask(r), own_log ? std::vector<std::string>{} : out.reference),
+      "`sensors`");
   if (out.sensors.size() > kMostSensors)
     throw usage_error("E0749", "`sensors`")
         .says("{} sensors are more than the {} that a scene may have", out.sensors.size(), kMostSensors);
@@ -137,7 +168,6 @@ Scene scene_from_recording(const SensorRecording& r) {
     throw usage_error("E0749", r.file)
         .says("a replay reads its recording several times, and this can be read once only")
         .hint("save it in a file");
-  if (r.sensors.empty()) ask_for_sensors(r);
   if (r.reference.empty() && !r.reference_file.empty())
     throw usage_error("E0749", "`reference_log`").says("which of its channels is the reference?").got(r.reference_file);
   const Chosen chosen = choose_columns(r);

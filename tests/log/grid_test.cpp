@@ -371,6 +371,14 @@ TEST_CASE("a clock in 0.1 ms runs over and goes on") {
   CHECK(r.info.time.unit_ns == 100000);
 }
 
+TEST_CASE("a clock that comes down at the log's first stamp after many steps began again") {
+  // 0.55 s before a 32-bit count of ns runs over.
+  std::string text = "t [ns],x\n";
+  for (const int run : {0, 1})
+    for (int k = 0; k < 750; ++k) text += fmt::format("{},{}\n", k * 5000000LL, (k + run) % 7);
+  CHECK_THAT(refusal(text), Catch::Contains("E0317"));
+}
+
 TEST_CASE("stamps that are no time axis") {
   CHECK(failure("t_us,x\n5,1\n5,2\n5,3\n").find("log.csv:3:1: error E0315: no time axis: all stamps are equal") == 0);
   const std::string turned = failure("t_us,x\n3000,1\n2000,2\n1000,3\n");

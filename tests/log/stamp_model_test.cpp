@@ -237,21 +237,51 @@ TEST_CASE("rates of logs with late stamps and lost rows are right to a thousandt
               Approx(100).epsilon(1e-3));
 }
 
-TEST_CASE("rows lost in packets of one stamp are said, with the rate of whole packets") {
+TEST_CASE("rows lost in packets of one stamp are missing samples at the rate of whole packets") {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> any;
-  std::string lossy = "time [s],x\n", whole = lossy, coarse = lossy;
+  for (const auto& [rows, lost, jitter] :
+       {std::tuple{10, 0.05, 0.0}, {10, 0.1, 0.0}, {4, 0.05, 0.0}, {8, 0.02, 0.0}, {10, 0.1, 0.02}}) {
+    std::string text = "time [s],x\n";
+    int there = 0;
+    double packet = 0;
+    for (int k = 0; k < 4000; ++k) {
+      if (k % rows == 0) packet = k * 0.01 + rows * 0.01 * jitter * any(random);
+      const bool is_there = k < rows || any(random) > lost;
+      if (is_there) text += fmt::format("{:.4f},{}\n", packet, k * k % 17);
+      there += is_there;
+    }
+    INFO(rows << " " << lost << " " << jitter);
+    const Recording r = test::read_text(text);
+    CHECK(r.info.time.rate_hz == Approx(100).epsilon(1e-3));
+    CHECK(static_cast<double>(r.info.time.missing_samples) == Approx(4000 - there).margin(rows));
+    CHECK(test::count(r, "packets") == 1);
+    ReadOptions over_time;
+    over_time.rate_hz = there / 40.0;
+    if (jitter == 0) CHECK(test::read_text(text, over_time).info.time.missing_samples == 0);
+  }
+}
+
+TEST_CASE("numbers of rows that beat with a coarse clock are no losses, and few losses are decided by the told rate") {
+  std::string whole = "time [s],x\n", coarse = whole, few = whole;
   for (int k = 0; k < 4000; ++k) {
     const std::string row = fmt::format("{:.3f},{}\n", k / 10 * 0.1, k * k % 17);
     whole += row;
-    if (any(random) > 0.05) lossy += row;
+    if (k < 400 && (k < 123 || k > 127)) few += row;
     coarse += fmt::format("{:.1f},{}\n", std::floor(k * 0.0107 * 10) / 10, k * k % 17);
   }
-  const Recording r = test::read_text(lossy);
-  REQUIRE(test::count(r, "uneven_sampling") == 1);
-  CHECK(r.info.warnings.find("uneven_sampling")->sentence.find("100 Hz") != std::string::npos);
-  CHECK(test::count(test::read_text(whole), "uneven_sampling") == 0);
-  CHECK(test::count(test::read_text(coarse), "uneven_sampling") == 0);
+  CHECK(test::read_text(whole).info.time.missing_samples == 0);
+  const Recording beats = test::read_text(coarse);
+  CHECK(beats.info.time.missing_samples == 0);
+  CHECK(beats.info.time.rate_hz == Approx(1 / 0.0107).epsilon(1e-3));
+  CHECK(test::count(beats, "uneven_sampling") == 0);
+  CHECK(test::read_text(few).info.warnings.find("uneven_sampling")->sentence.find("`rate_hz` 100") !=
+        std::string::npos);
+  ReadOptions told;
+  told.rate_hz = 100;
+  const Recording r = test::read_text(few, told);
+  CHECK(r.info.time.rate_hz == Approx(100));
+  CHECK(r.info.time.missing_samples == 5);
 }
 
 TEST_CASE("rows that keep no even clock are said to be uneven") {

@@ -10,6 +10,7 @@
 
 #include "libchar/core/error.hpp"
 #include "libchar/log/read.hpp"
+#include "libchar/log/topics/topic_rows.hpp"
 #include "tests/support/shared.hpp"
 
 using namespace libchar;
@@ -241,7 +242,7 @@ TEST_CASE("lines of inertial units in a log of several kinds, behind stamps, beh
   CHECK(answers.samples[4][7] == -2);
   const Recording rates = read(corrected);
   CHECK(rates.info.time.rate_hz == Approx(100));
-  CHECK(names(rates) == "pitch[rad/s] roll[rad/s] yaw[rad/s] lateral[m/s^2] longitudinal[m/s^2] vertical[m/s^2] ");
+  CHECK(names(rates) == "pitch[rad] roll[rad] yaw[rad] lateral[m/s] longitudinal[m/s] vertical[m/s] ");
   CHECK(rates.samples[2][4] == 1.5);
 }
 
@@ -276,6 +277,8 @@ TEST_CASE("lines of inertial units: VectorNav and NovAtel") {
   for (const auto& [name, line, channel, value] :
        {std::tuple{"%RAWIMUSXA", "00,11,1724,219418.0{}0,111607,43088060,1,2,186983,-132863,823", 4U, 132863.0},
         {"#CORRIMUDATAA", "1724,219418.0{}0,-2.5,1e-3,0.25,1e-4,2e-4,3e-4", 0U, -2.5},
+        {"%IMURATECORRIMUSA", "1724,219418.0{}0,-2.5,1e-3,0.25,1e-4,2e-4,3e-4", 0U, -2.5},
+        {"%IMURATEPVASA", "1724,219418.0{}0,51.25,-114,1100,1,2,3,4,5,6,INS_SOLUTION_GOOD", 0U, 51.25},
         {"%INSPVASA", "1724,219418.0{}0,51.25,-114,1100,1,2,3,4,5,6,INS_SOLUTION_GOOD", 0U, 51.25}}) {
     std::string lines;
     for (int k = 0; k < 8; ++k)
@@ -370,7 +373,12 @@ TEST_CASE("a table of one row beside a recording needs no choice") {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "Accelerometer.csv") << "time,x\n0,1\n0.01,2\n0.02,1\n0.03,3\n";
   std::ofstream(folder / "Metadata.csv") << "version,appVersion,recording epoch time\n3,1.2,1714564800000\n";
-  CHECK(names(read_recording((folder / ".").string())).starts_with("x"));
+  const std::string path = (folder / ".").string();
+  CHECK(names(read_recording(path)).starts_with("x"));
+  std::ofstream(folder / "Gyroscope.csv") << "time,x\n0,1\n0.01,2\n0.02,1\n0.03,3\n0.04,3\n";
+  std::ofstream(folder / "Metadata.csv") << "version,device name\n3,iPhone\n";
+  CHECK(names(read_recording(path, topic("*"))).starts_with("Accelerometer/x"));
+  CHECK(likely_topic(log_listing(path, {}).topics).name == "Gyroscope");
 }
 
 TEST_CASE("a folder of CSV files is read as the archive of them is") {

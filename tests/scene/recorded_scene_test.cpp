@@ -156,3 +156,25 @@ TEST_CASE("a scene's recording may be a folder of CSV files beside it, and its t
   std::filesystem::create_symlink("/etc/hostname", folder / "Link.csv");
   CHECK_THAT(bench.refusal(head + "recording: phone\nsensors: [x]\n"), Contains("E0731"));
 }
+
+TEST_CASE("scene from a recording: the sources of a long table with one column are the sensors") {
+  ArrayBench bench;
+  const auto table = [&](const std::string& columns, const std::vector<std::string>& ids, const std::string& values) {
+    std::string text = "t [s]," + columns + "\n";
+    for (const char* t : {"0", "0.1", "0.2", "0.3"})
+      for (const std::string& id : ids) text += t + ("," + id) + values + "\n";
+    bench.put("long.csv", text);
+    SensorRecording asked;
+    asked.file = bench.path("long.csv");
+    asked.reading.kinds.group_by = "id";
+    return asked;
+  };
+  CHECK(bench.sensors(scene_from_recording(table("id,x", {"0", "1", "2"}, ",1.5"))) ==
+        SensorNames{"0=0", "1=1", "2=2"});
+  SensorRecording asked = table("id,x", {"imu1", "imu2", "imu10"}, ",1.5");
+  asked.reference = {"imu10"};
+  CHECK(bench.sensors(scene_from_recording(asked)) == SensorNames{"imu1=imu1", "imu2=imu2"});
+  // Sources of unlike names may measure unlike quantities, as columns do.
+  CHECK_THAT(bench.refused(table("id,x", {"temp", "hum"}, ",1.5")), Contains("which channels measure one quantity"));
+  CHECK_THAT(bench.refused(table("id,x,y", {"a", "b"}, ",1,2")), Contains("a_x, a_y, b_x, b_y") && Contains("'*_x'"));
+}

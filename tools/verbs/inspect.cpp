@@ -13,6 +13,7 @@
 #include "libchar/core/text/quantity_text.hpp"
 #include "libchar/core/text/text.hpp"
 #include "libchar/log/inspection.hpp"
+#include "libchar/log/topics/topic_rows.hpp"
 #include "libchar/report/text/characterization_text.hpp"
 #include "reading_options.hpp"
 #include "verb.hpp"
@@ -49,13 +50,9 @@ std::string next_command(const InspectVerb& verb, const libchar::Inspection& ins
     std::erase_if(found, [](const libchar::Finding& one) { return !one.help.empty(); });
   const std::string flags = reading_flags(reading, info);
   const std::string log = libchar::shell_word(info.file);
-  if (libchar::is_listing(info)) {
-    for (const bool sensor : {true, false})
-      for (const libchar::LogTopic& topic : info.topics)
-        if (topic.why_not.empty() && topic.sensor == sensor && !topic.fields.empty())
-          return fmt::format("  next: sensorchar inspect {}{} --topic {}\n", log, flags,
-                             libchar::shell_word(topic.name));
-  }
+  if (libchar::is_listing(info))
+    return fmt::format("  next: sensorchar inspect {}{} --topic {}\n", log, flags,
+                       libchar::shell_word(libchar::likely_topic(info.topics).name));
   if (info.time.rate_hz <= 0 && !info.time.column.empty())
     return fmt::format("  next: {} with a time stamp {} no sampling rate; two rows would\n",
                        info.rows == 1 ? "one row" : fmt::format("{} rows", info.rows),

@@ -1,7 +1,7 @@
 // ASCII lines of inertial units: VectorNav ("$VNIMU,a,b,…*CC", VN-100 User Manual) and NovAtel
 // ("#RAWIMUSXA,header;week,seconds,…*CRC", OEM7 Commands and Logs; '%' before a short header), also behind a stamp of
-// what wrote the log. NovAtel's raw axes are z, -y, x, in counts: the sign of y is turned. CORRIMUDATA holds
-// increments, each of one message.
+// what wrote the log. NovAtel's raw axes are z, -y, x, in counts: the sign of y is turned. CORRIMUDATA, CORRIMUS and
+// IMURATECORRIMUS hold increments, each of one message.
 
 #include <fmt/format.h>
 
@@ -30,8 +30,6 @@ struct Kind {
 constexpr std::string_view kCounts = "acc_z,acc_y,acc_x,gyro_z,gyro_y,gyro_x";
 constexpr std::string_view kIncrements =
     "pitch [rad],roll [rad],yaw [rad],lateral [m/s],longitudinal [m/s],vertical [m/s]";
-constexpr std::string_view kRates =
-    "pitch [rad/s],roll [rad/s],yaw [rad/s],lateral [m/s^2],longitudinal [m/s^2],vertical [m/s^2]";
 constexpr std::string_view kInertial =
     "latitude [deg],longitude [deg],height [m],north [m/s],east [m/s],"
     "up [m/s],roll [deg],pitch [deg],azimuth [deg],status";
@@ -60,10 +58,12 @@ constexpr std::array kKinds = {
     Kind{"RAWIMUA", Stamped::first, 1, true, kCounts},
     Kind{"CORRIMUDATAA", Stamped::first, 0, false, kIncrements},
     Kind{"CORRIMUDATASA", Stamped::first, 0, false, kIncrements},
-    Kind{"CORRIMUSA", Stamped::header, 1, false, kRates},
-    Kind{"IMURATECORRIMUSA", Stamped::header, 1, false, kRates},
+    Kind{"CORRIMUSA", Stamped::header, 1, false, kIncrements},
+    Kind{"IMURATECORRIMUSA", Stamped::first, 0, false, kIncrements},
     Kind{"INSPVAA", Stamped::first, 0, false, kInertial},
     Kind{"INSPVASA", Stamped::first, 0, false, kInertial},
+    Kind{"IMURATEPVAA", Stamped::first, 0, false, kInertial},
+    Kind{"IMURATEPVASA", Stamped::first, 0, false, kInertial},
     Kind{"INSPVAXA", Stamped::header, 2, false, kInertialX}};
 
 std::string header_of(std::string_view columns) {

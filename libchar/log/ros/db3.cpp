@@ -114,8 +114,7 @@ class Db3Reader final : public MessageTopics {
   }
 
   std::vector<std::string> dialect() const override {
-    return {fmt::format("rosbag2 database, {}",
-                        definitions_.empty() ? "no definitions in it: those of common types" : "with definitions")};
+    return {fmt::format("rosbag2 database, {} definitions", definitions_.empty() ? "without" : "with")};
   }
 
   std::uint64_t bytes_read() const override {

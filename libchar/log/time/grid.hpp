@@ -18,6 +18,7 @@
 #include "libchar/log/read.hpp"
 #include "libchar/log/time/clock_behind.hpp"
 #include "libchar/log/time/clock_breaks.hpp"
+#include "libchar/log/time/lossy_packets.hpp"
 #include "libchar/log/time/recent_stamps.hpp"
 #include "libchar/log/time/stamp_model.hpp"
 #include "libchar/log/time/stamp_sketch.hpp"
@@ -149,6 +150,7 @@ class TimeGrid {
   std::size_t rows_to_learn() const;
   void learn();
   std::vector<std::int64_t> first_stamps();
+  void spread_lossy_packets(const std::vector<std::int64_t>& stamps);
   void drop_wild_start(const std::vector<std::int64_t>& stamps);
   void leave_out_first_rate(const std::vector<std::int64_t>& stamps);
   void refuse_without_axis(const std::vector<std::int64_t>& stamps);
@@ -177,6 +179,7 @@ class TimeGrid {
   Verdict backward(const Pending& front, std::size_t row, std::int64_t& stamp);
   [[noreturn]] void refuse_backward() const;
   void refuse_many_backward() const;
+  bool is_restart(std::int64_t stamp, const ClockWrap& wrap) const;
   void unwrap(const Pending& front, std::size_t row, const ClockWrap& wrap, std::int64_t& stamp);
   bool next_row(const Pending*& at, std::size_t& item, std::size_t& row) const;
   bool next_lies_before(const Pending& front, std::size_t row, std::int64_t stamp) const;
@@ -249,6 +252,7 @@ class TimeGrid {
   Bursts bursts_;
   BackwardRows backward_;
   EvenClock behind_;
+  PacketRows packets_;
   std::optional<std::int64_t> start_ns_;
   struct Clocks {
     OwnRows rows;

@@ -8,7 +8,6 @@
 #include <numeric>
 #include <optional>
 
-#include "libchar/core/numeric/median.hpp"
 #include "libchar/core/numeric/whole.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
@@ -40,34 +39,6 @@ StampModel without_clock(const std::vector<std::int64_t>& stamps) {
   const auto end = std::upper_bound(steps.begin(), steps.end(), longest);
   const double ns = std::accumulate(steps.begin(), end, 0.0) / static_cast<double>(end - steps.begin());
   return {ns, longest, StampPattern::uneven, ns, ns};
-}
-
-/// Rows of one stamp, one packet each usual time, most of them with the same number of rows and the others with fewer:
-/// some are lost. That number, in an interval of ns; none where a coarse clock or bursts make the numbers.
-std::optional<double> whole_packet_ns(const std::vector<std::int64_t>& stamps) {
-  constexpr std::size_t kFewest = 8, kLeastRows = 3;
-  constexpr double kSteady = 0.8, kOff = 0.05;
-  std::vector<std::size_t> sizes = {1};
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < stamps.size(); ++i) {
-    if (stamps[i] == stamps[i - 1]) {
-      ++sizes.back();
-      continue;
-    }
-    steps.push_back(step_between(stamps[i - 1], stamps[i]));
-    sizes.push_back(1);
-  }
-  sizes.pop_back();  // may be cut
-  if (sizes.size() < kFewest) return std::nullopt;
-  const auto [least, most] = std::minmax_element(sizes.begin() + 1, sizes.end());
-  const auto of_size = [&](std::size_t rows) { return std::count(sizes.begin(), sizes.end(), rows); };
-  if (*most < kLeastRows || *least + 2 > *most || of_size(*most) <= of_size(*most - 1)) return std::nullopt;
-  std::vector<double> sorted = steps;
-  const double usual = median_in_place(sorted, Middle::lower);
-  const auto steady =
-      std::count_if(steps.begin(), steps.end(), [&](double step) { return std::fabs(step - usual) <= kOff * usual; });
-  if (static_cast<double>(steady) < kSteady * static_cast<double>(steps.size())) return std::nullopt;
-  return usual / static_cast<double>(*most);
 }
 
 }  // namespace
@@ -184,10 +155,38 @@ void TimeGrid::leave_out_first_rate(const std::vector<std::int64_t>& stamps) {
                   shortest(seconds)));
 }
 
+// Where packets of one stamp lost rows, each row gets an instant of its own, if that is sure or told.
+void TimeGrid::spread_lossy_packets(const std::vector<std::int64_t>& stamps) {
+  const auto lossy = source_.several_clocks() ? std::nullopt : find_lossy_packets(stamps);
+  if (!lossy) return;
+  constexpr double kAsTold = 0.01;
+  const double hz = 1e9 / lossy->interval_ns(), stated = source_.info().time.rate_hz,
+               told = options_.rate_hz.value_or(stated);
+  const std::string rate = brief_text(hz, 5);
+  if (told > 0 ? std::fabs(told / hz - 1) > kAsTold : !lossy->sure) {
+    if (told == 0 && lossy->likely)
+      warnings_.add("uneven_sampling",
+                    fmt::format("packets of one stamp have fewer rows at times: if rows are lost, {} Hz is the rate of "
+                                "the samples (`rate_hz` {} takes what the others lack as missing)",
+                                rate, rate));
+    return;
+  }
+  packets_ = PacketRows(*lossy);
+  for (Pending& item : pending_) packets_.spread(item.block.time_ns, item.done);
+  warnings_.add(
+      "packets",
+      fmt::format("packets of {} rows share a stamp, and some lack rows: samples are those of {} Hz, and what "
+                  "a packet lacks is taken to be its last rows",
+                  lossy->rows, rate));
+}
+
 // At the first row, and at the first one of a window that begins later: in front of it the rate may be another.
 void TimeGrid::learn() {
   learned_ = true;
-  if (!last_.any) drop_wild_start(first_stamps());
+  if (!last_.any) {
+    drop_wild_start(first_stamps());
+    spread_lossy_packets(first_stamps());
+  }
   const std::vector<std::int64_t> stamps = caught_up(first_stamps());
   if (!last_.any && !source_.several_clocks()) leave_out_first_rate(stamps);
   const double stated = source_.info().time.rate_hz;
@@ -206,11 +205,6 @@ void TimeGrid::learn() {
   if (step_.ns == 0 && stamps.size() > 1) refuse_without_axis(stamps);
   if (!begins) return;
   window_.begun = true;
-  if (const auto whole = step_.coarse && !options_.rate_hz ? whole_packet_ns(stamps) : std::nullopt)
-    warnings_.add("uneven_sampling",
-                  fmt::format("packets of one stamp have fewer rows at times: whole ones have {} Hz, which is the rate "
-                              "of the samples, and what is lost in the others is not counted",
-                              brief_text(1e9 / *whole, 5)));
   say_pattern(step_.model);
   begin();
 }

@@ -270,9 +270,17 @@ void TimeGrid::leave_missing(std::uint64_t samples, std::int64_t steps) {
   last_.index += steps;
 }
 
+// A clock that runs over while rows are missing comes down anywhere, and at the log's first stamp by chance only.
+bool TimeGrid::is_restart(std::int64_t stamp, const ClockWrap& wrap) const {
+  constexpr double kAsFirst = 1.5, kFollows = 2.5;  // steps
+  return step_between(last_.stamp, stamp + wrap.range_ns) > kFollows * step_.ns &&
+         std::fabs(step_between(last_.first, stamp - last_.wrap)) <= kAsFirst * step_.ns;
+}
+
 // What begins again goes on; other steps back drop the row.
 TimeGrid::Verdict TimeGrid::backward(const Pending& front, std::size_t row, std::int64_t& stamp) {
-  if (const auto wrap = find_wrap(last_.stamp - last_.wrap, stamp - last_.wrap, source_.info().time, step_.ns)) {
+  const auto wrap = find_wrap(last_.stamp - last_.wrap, stamp - last_.wrap, source_.info().time, step_.ns);
+  if (wrap && !is_restart(stamp, *wrap)) {
     unwrap(front, row, *wrap, stamp);
     return Verdict::keep;
   }

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -24,6 +26,14 @@ namespace libchar {
 namespace {
 
 bool readable(const LogTopic& topic) { return topic.why_not.empty() && !topic.fields.empty(); }
+
+/// Of these that can be read. A table of one row beside recordings, such as a phone's Metadata.csv, is none.
+std::vector<std::size_t> recordings_of(const std::vector<LogTopic>& topics, std::vector<std::size_t> some) {
+  std::erase_if(some, [&](std::size_t t) { return !readable(topics[t]); });
+  const auto one_row = [&](std::size_t t) { return topics[t].rows == 1; };
+  if (!std::all_of(some.begin(), some.end(), one_row)) std::erase_if(some, one_row);
+  return some;
+}
 
 std::vector<std::string> readable_names(const std::vector<LogTopic>& topics) {
   std::vector<std::string> names;
@@ -113,10 +123,10 @@ std::vector<std::size_t> topics_named(const std::vector<LogTopic>& topics, const
   std::vector<std::size_t> found;
   for (std::size_t t = 0; t < topics.size(); ++t) {
     if (topics[t].name == wanted) return {t};
-    const bool fits = is_pattern(wanted) ? matches(wanted, topics[t].name) : is_instance_of(topics[t].name, wanted);
-    if (fits && readable(topics[t])) found.push_back(t);
+    if (is_pattern(wanted) ? matches(wanted, topics[t].name) : is_instance_of(topics[t].name, wanted))
+      found.push_back(t);
   }
-  return found;
+  return recordings_of(topics, std::move(found));
 }
 
 std::size_t named_topic(const std::vector<LogTopic>& topics, const std::string& wanted, const std::string& file) {
@@ -192,15 +202,12 @@ std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics, con
     refuse_unreadable(topics[t], file);
     return choice_of(topics, t, options);
   }
-  std::vector<std::size_t> usable, sensors;
-  for (std::size_t t = 0; t < topics.size(); ++t) {
-    if (!readable(topics[t])) continue;
-    usable.push_back(t);
-    if (topics[t].sensor) sensors.push_back(t);
-  }
-  // A table of one row beside recordings, such as a phone's Metadata.csv, is none.
-  const auto one_row = [&](std::size_t t) { return topics[t].rows == 1; };
-  if (!std::all_of(usable.begin(), usable.end(), one_row)) std::erase_if(usable, one_row);
+  std::vector<std::size_t> all(topics.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const std::vector<std::size_t> usable = recordings_of(topics, std::move(all));
+  std::vector<std::size_t> sensors;
+  std::copy_if(usable.begin(), usable.end(), std::back_inserter(sensors),
+               [&](std::size_t t) { return topics[t].sensor; });
   if (usable.size() == 1) return choice_of(topics, usable[0], options);
   if (chooses(options) && !usable.empty()) {
     const std::size_t t = topic_of_channels(topics, options, file);
@@ -240,16 +247,18 @@ std::vector<TopicChoice> choose_topics(const std::vector<LogTopic>& topics, cons
   return chosen;
 }
 
+const LogTopic& likely_topic(const std::vector<LogTopic>& topics) {
+  return *std::max_element(topics.begin(), topics.end(), [](const LogTopic& a, const LogTopic& b) {
+    return std::tuple(readable(a), a.sensor, a.rows) < std::tuple(readable(b), b.sensor, b.rows);
+  });
+}
+
 void refuse_without_topic(const std::vector<LogTopic>& topics, const std::string& file, const Findings& losses) {
   const std::vector<std::string> names = readable_names(topics);
   if (names.empty()) refuse_unreadable_log(topics, file, losses);
-  const auto better = [](const LogTopic& a, const LogTopic& b) {
-    return std::tuple(readable(a), a.sensor, a.rows) < std::tuple(readable(b), b.sensor, b.rows);
-  };
   throw usage_error("E0427", file)
       .says("holds {} topics, each with a clock of its own: {}", names.size(), first_names(names))
-      .hint("`topic` {} chooses one, `topic` '*' reads all side by side",
-            std::max_element(topics.begin(), topics.end(), better)->name);
+      .hint("`topic` {} chooses one, `topic` '*' reads all side by side", likely_topic(topics).name);
 }
 
 namespace {

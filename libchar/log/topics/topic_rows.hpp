@@ -35,6 +35,9 @@ std::optional<TopicChoice> choose_topic(const std::vector<LogTopic>& topics, con
 std::vector<TopicChoice> choose_topics(const std::vector<LogTopic>& topics, const ReadOptions& options,
                                        const std::string& file);
 
+/// The one to look at first: of a sensor, with the most rows. There must be one.
+const LogTopic& likely_topic(const std::vector<LogTopic>& topics);
+
 /// The sentence for a log whose topic has to be chosen first, Error(usage), or that has none which
 /// can be read, Error(input): what it lost (`losses`) may be the reason.
 [[noreturn]] void refuse_without_topic(const std::vector<LogTopic>& topics, const std::string& file,
