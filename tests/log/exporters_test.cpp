@@ -214,11 +214,12 @@ std::vector<Export> phone_exports() {
                  {0.01, 0, 0.03},
                  "left out columns that repeat the clock: seconds_elapsed"});
   out.push_back({"AndroSensor",
-                 "sep=;\nACCELEROMETER X (m/s²);GYROSCOPE Z (rad/s);Time since start in ms ;YYYY-MO-DD HH-MI-SS_SSS\n" +
+                 "sep=;\nACCELEROMETER X (m/s²);GYROSCOPE Z (rad/s);Satellites in range;Time since start in ms "
+                 ";YYYY-MO-DD HH-MI-SS_SSS\n" +
                      lines(12,
                            [](int k) {
-                             return fmt::format("0.1;{};{};2024-05-01 12:00:0{}:{:03d}\n", k, 5 + 100 * k, k / 10,
-                                                (100 * k) % 1000);
+                             return fmt::format("0.1;{};{} / 18;{};2024-05-01 12:00:0{}:{:03d}\n", k, k, 5 + 100 * k,
+                                                k / 10, (100 * k) % 1000);
                            }),
                  "ACCELEROMETER X[m/s²] GYROSCOPE Z[rad/s]",
                  10,
@@ -374,6 +375,24 @@ std::vector<Export> bench_exports() {
   const std::vector<std::string> beside = {
       "Record Length,4.0e+01", "Sample Interval,1.0e-04", "Trigger Point,1e+03", ",", "Source,CH1",
       "Vertical Units,V",      "Horizontal Units,s"};
+  out.push_back({"Nexus of Vicon: devices",
+                 "Devices,,,\n2000,,,\n,,Force Plate - Force,\nFrame,Sub Frame,Fx,Fy\n,,N,N\n" +
+                     lines(12, [](int k) { return fmt::format("{},{},{},-0.5\n", 1 + k / 20, k % 20, k); }),
+                 "Frame[] Sub Frame[] Fx[N] Fy[N]",
+                 2000,
+                 kNoStart,
+                 {1, 0, 0, -0.5},
+                 "the rate in line 2"});
+  out.push_back({"Nexus of Vicon: trajectories",
+                 "Trajectories,,,,,,,\n100,,,,,,,\n,,box:left,,,box:right,,\nFrame,Sub Frame,X,Y,Z,X,Y,Z\n"
+                 ",,mm,mm,mm,mm,mm,mm\n" +
+                     lines(12, [](int k) { return fmt::format("{},0,{},2,3,4,5,6.5\n", 1 + k, k); }),
+                 "Frame[] Sub Frame[] box:left X[mm] box:left Y[mm] box:left Z[mm] box:right X[mm] box:right Y[mm] "
+                 "box:right Z[mm]",
+                 100,
+                 kNoStart,
+                 {1, 0, 0, 2, 3, 4, 5, 6.5},
+                 "the rate in line 2"});
   out.push_back({"Tektronix: settings beside the first rows",
                  lines(40,
                        [&](int k) {

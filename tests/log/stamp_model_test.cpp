@@ -145,6 +145,27 @@ TEST_CASE("samples that beat with the clock's step are no missing ones, and lost
   }
 }
 
+TEST_CASE("an interval that drifts beats with whole seconds, too") {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> late(0, 0.01);
+  std::vector<std::int64_t> stamps;
+  double at = 0.3;
+  for (int i = 0; i < 16385; ++i) {
+    stamps.push_back(1000000000 * static_cast<std::int64_t>(std::floor(at + late(random))));
+    at += 1.0263 - 0.0028 * i / 16385 + 0.0004 * std::sin(i * 1e-3);
+  }
+  CHECK(model_of_stamps(stamps).ns == Approx(1.0249e9).epsilon(1e-3));
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937_64 losing(seed);
+    std::bernoulli_distribution lost(0.025);
+    std::vector<std::int64_t> lossy;
+    for (int i = 0; lossy.size() < 16385; ++i)
+      if (!lost(losing)) lossy.push_back(std::int64_t{1000000000} * i);
+    INFO(seed);
+    CHECK(model_of_stamps(lossy).ns == Approx(1e9).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("few rows lost at random stay missing where chance keeps them near a line") {
   int wrong = 0;
   for (unsigned seed = 1; seed <= 400; ++seed) {

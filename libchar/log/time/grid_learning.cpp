@@ -248,9 +248,8 @@ void TimeGrid::say_pattern(const StampModel& found) {
     case StampPattern::uneven:
       if (behind_.needed && !behind_.ns) {
         warnings_.add("uneven_sampling",
-                      fmt::format("the rows keep no even clock: {} is their mean rate, values are taken as if they "
-                                  "were even, and frequencies and averaging times are off by that",
-                                  detail::frequency_text(span_hz, 4)));
+                      "the rows keep no even clock: the rate is their mean, values are taken as if they were even, "
+                      "and frequencies and averaging times are off by that");
         return;
       }
       warnings_.add("uneven_stamps", fmt::format("the stamps take turns in steps of unlike length and keep to one "

@@ -86,8 +86,8 @@ std::optional<LossyPackets> find_lossy_packets(const std::vector<std::int64_t>& 
   const std::vector<std::size_t> sizes(all.rows.begin() + 1, all.rows.end());
   const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
   if (*most < kLeastRows || *least == *most || all.rows[0] > *most) return std::nullopt;
-  const auto of_size = [&](std::size_t rows) { return std::count(sizes.begin(), sizes.end(), rows); };
-  const bool likely = *least + 2 <= *most && of_size(*most) > of_size(*most - 1);
+  const auto whole = static_cast<std::size_t>(std::count(sizes.begin(), sizes.end(), *most));
+  const bool likely = *least + 2 <= *most && 2 * whole > sizes.size();
   LossyPackets out{time_apart(all.steps), *most, all.rows[0], lost_at_random(sizes, *most), likely};
   if (!(out.apart_ns > 0)) return std::nullopt;
   return out;

@@ -284,9 +284,9 @@ bool on_one_line(const StampLine& line, const FirstSteps& steps, double common) 
 /// Samples a little slower or faster than a clock of whole seconds tells them apart: now and then a step more or
 /// less, as evenly as no losses come (Kuiper's statistic of six at random stays as small once in 3,000, the stricter
 /// one of four once in 500; of those that beat 99 and 95 % are known). Of finer steps a logger that loses each
-/// hundredth row is as likely.
+/// hundredth row is as likely. An interval that drifts beats as evenly in pieces.
 bool beats_with_clock(const StampLine& line, const FirstSteps& steps, double common) {
-  constexpr std::size_t kFewest = 4, kMany = 6;
+  constexpr std::size_t kFewest = 4, kMany = 6, kPieces = 4;
   constexpr double kSecond = 1e9;
   const double tick = tick_of(steps.rising);
   if (tick < kSecond) return false;
@@ -295,7 +295,11 @@ bool beats_with_clock(const StampLine& line, const FirstSteps& steps, double com
     if (!multiple_of(step, tick, 1e-3)) return false;
     odd += std::fabs(step - common) > 0.5 * tick;
   }
-  return common < 1.5 * tick && odd >= kFewest && line.spread <= (odd < kMany ? 1.1 : 1.25) * tick;
+  if (common >= 1.5 * tick || odd < kFewest) return false;
+  if (line.spread <= (odd < kMany ? 1.1 : 1.25) * tick) return true;
+  if (odd < kPieces * kMany) return false;
+  const std::vector<double> spreads = spreads_of_pieces(steps.line, steps.line.size() * kMany / odd);
+  return spreads[spreads.size() / 2] <= 1.25 * tick;
 }
 
 /// The step of which half of the time consists of longer ones: that from packet to packet, however many rows follow

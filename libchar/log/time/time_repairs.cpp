@@ -273,6 +273,7 @@ void TimeGrid::leave_missing(std::uint64_t samples, std::int64_t steps) {
 // A clock that runs over while rows are missing comes down anywhere, and at the log's first stamp by chance only.
 bool TimeGrid::is_restart(std::int64_t stamp, const ClockWrap& wrap) const {
   constexpr double kAsFirst = 1.5, kFollows = 2.5;  // steps
+  if (backward_.in_a_row > 0) stamp = backward_.first;
   return step_between(last_.stamp, stamp + wrap.range_ns) > kFollows * step_.ns &&
          std::fabs(step_between(last_.first, stamp - last_.wrap)) <= kAsFirst * step_.ns;
 }

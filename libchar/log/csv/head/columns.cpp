@@ -28,6 +28,7 @@ bool like_words(std::string_view text) {
   const bool typeset = text.starts_with("\xE2\x88\x92") || text.starts_with("\xE2\x80\x8B");
   if (letter(text[0]) || text[0] == '/' || text[0] == '<' || (outside >= 0x80 && !typeset)) return true;
   if (text.starts_with("0x") || std::count(text.begin(), text.end(), '.') == 3) return true;  // addresses
+  if (text.find(" / ") != std::string_view::npos) return true;                                // "13 / 18" satellites
   return std::count_if(text.begin(), text.end(), letter) > 1 || text.find(':') != std::string_view::npos;
 }
 

@@ -451,6 +451,7 @@ Dialect understand(std::string_view head, bool whole, const ReadOptions& options
   const char separator = take_separator_line(study);
   refuse_no_data(study);
   take_scope_settings(study);
+  take_rate_of_nexus(study);
   study.dialect.line_end = (study.comments.empty() ? study.sample : study.comments)[0].end;
   find_lead(study);
   choose_cells(study, separator);

@@ -271,15 +271,16 @@ void leave_clock_unnamed(const Study& study, Cells& names) {
 void name_by_sources(Study& study, const Line& header) {
   auto& columns = study.dialect.columns;
   if (study.preamble.empty() || study.preamble.back().number + 1 != header.number) return;
-  const Cells sources = split(study.preamble.back().text, study.dialect.delimiter);
+  Cells sources = split(study.preamble.back().text, study.dialect.delimiter);
   std::map<std::string, std::size_t> count;
   std::set<std::string> named;
   for (const Column& column : columns) ++count[column.text];
   if (sources.size() != columns.size() || count.size() == columns.size()) return;
   std::vector<std::string> texts;
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (cell_kind(sources[c], study.style()) != CellKind::word) return;
     const bool several = count[columns[c].text] > 1 && !called_time(columns[c].text);
+    if (c > 0 && sources[c].text.empty()) sources[c] = sources[c - 1];  // of the columns from there on
+    if (several && cell_kind(sources[c], study.style()) != CellKind::word) return;
     texts.push_back(several ? header_text(study, sources[c], study.preamble.back(), 0) + " " + columns[c].text
                             : columns[c].text);
     if (several && !named.insert(texts.back()).second) return;

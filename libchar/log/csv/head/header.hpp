@@ -25,6 +25,9 @@ bool named_by_daemon(Study& study);
 /// Settings beside the names of oscilloscopes are none.
 void take_scope_settings(Study& study);
 
+/// Nor are two lines in front of the names that state what follows and its rate, as Nexus writes them.
+void take_rate_of_nexus(Study& study);
+
 /// The begin of a log whose first row is the time, and whose second is the rate.
 bool begins_with_rate(Study& study);
 

@@ -1,8 +1,10 @@
 // What instruments write into their first lines that is neither names nor rows: oscilloscopes of Rigol ("X,CH1,Start,
 // Increment," above "Sequence,Volt,-6e-4,1e-6"; "Time(s),CH1V,t0 =-6e-4, tInc = 2e-9,"), wristbands of Empatica (a row
 // of the time since 1970, and one of the rate), SignalExpress of NI ("channel names:", "dt:", "data:", and below each
-// what it says), recorders of Yokogawa (a key in front of each line, nothing in front of the rows).
+// what it says), recorders of Yokogawa (a key in front of each line, nothing in front of the rows), Nexus of Vicon
+// (what follows, "Devices", and a line with its rate).
 #include <algorithm>
+#include <array>
 
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/text.hpp"
@@ -52,6 +54,23 @@ void take_scope_settings(Study& study) {
   const std::string_view row = below.text;  // as many empty cells as the rows end with
   study.names = std::string(names.text.substr(0, zero)) + std::string(row.size() - 1 - row.find_last_not_of(','), ',');
   names.text = study.names;
+}
+
+void take_rate_of_nexus(Study& study) {
+  static constexpr std::array<std::string_view, 5> kKinds = {"Devices", "Trajectories", "Model Outputs", "Joints",
+                                                             "Segments"};
+  if (study.sample.size() < 4) return;
+  const auto only = [&](std::size_t line) {  // the first cell, where there is no other
+    const std::string_view text = trimmed(study.sample[line].text);
+    return trimmed(text.substr(0, text.find_last_not_of(",;\t ") + 1));  // npos + 1 is 0
+  };
+  const auto rate = parse_double(only(1));
+  if (std::find(kKinds.begin(), kKinds.end(), only(0)) == kKinds.end() || !rate || *rate < kRates.lowest ||
+      *rate > kRates.highest)
+    return;
+  study.rate_hz = *rate;
+  study.sample.erase(study.sample.begin(), study.sample.begin() + 2);
+  study.info.dialect.emplace_back("the rate in line 2, as of Nexus");
 }
 
 bool named_by_signal_express(Study& study) {
