@@ -296,6 +296,19 @@ TEST_CASE("numbers of rows that beat with a coarse clock are no losses, and few 
   CHECK(beats.info.time.missing_samples == 0);
   CHECK(beats.info.time.rate_hz == Approx(1 / 0.0107).epsilon(1e-3));
   CHECK(test::count(beats, "uneven_sampling") == 0);
+  // A link whose packets have 7 rows and now and then 6, and lose a whole one at times: no rate of 9 Hz.
+  std::mt19937_64 random(7);
+  std::bernoulli_distribution lost(0.02);
+  std::string polled = "time [s],x\n";
+  double last = -1;
+  bool dropped = false;
+  for (int k = 0; k < 4000; ++k) {
+    const double packet = std::ceil(k / 8.13) * 1.0;
+    if (packet > last) dropped = k > 0 && lost(random);
+    last = packet;
+    if (!dropped) polled += fmt::format("{:.3f},{}\n", packet, k * k % 17);
+  }
+  CHECK(test::read_text(polled).info.time.rate_hz == Approx(8.13).epsilon(0.03));
   CHECK(test::read_text(few).info.warnings.find("uneven_sampling")->sentence.find("`rate_hz` 100") !=
         std::string::npos);
   ReadOptions told;

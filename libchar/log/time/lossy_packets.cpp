@@ -51,10 +51,35 @@ double time_apart(const std::vector<double>& steps) {
   return steady >= kSteady * static_cast<double>(steps.size()) ? time / packets : 0;
 }
 
+/// Whole packets among short ones, or these among those, stand as evenly as where the numbers of rows beat with a clock:
+/// packets lost at random stand at distances that scatter as much as their mean.
+bool beat(const std::vector<std::size_t>& sizes, std::size_t whole) {
+  constexpr std::size_t kFewest = 3;
+  constexpr double kScatter = 0.25;  // of that of random ones
+  const auto n = static_cast<double>(sizes.size());
+  const auto full = static_cast<double>(std::count(sizes.begin(), sizes.end(), whole));
+  const bool of_full = 2 * full < n;
+  std::vector<double> apart;
+  std::size_t last = sizes.size();
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    if ((sizes[i] == whole) != of_full) continue;
+    if (last < i) apart.push_back(static_cast<double>(i - last));
+    last = i;
+  }
+  if (apart.size() < kFewest) return false;
+  double sum = 0, squares = 0;
+  for (const double one : apart) {
+    sum += one;
+    squares += one * one;
+  }
+  const auto count = static_cast<double>(apart.size());
+  const double mean = sum / count;
+  return squares / count - mean * mean < kScatter * mean * (mean - 1);
+}
+
 /// Is each row lost with one probability? Then whole packets are as many, and sizes scatter as much, as that makes.
-/// Sizes that beat with a clock add up to a line within one row.
 bool lost_at_random(const std::vector<std::size_t>& sizes, std::size_t whole) {
-  constexpr double kMostLost = 0.35, kFewestWhole = 4, kLeastWandering = 1.5;
+  constexpr double kMostLost = 0.35, kFewest = 4;
   const auto m = static_cast<double>(whole), n = static_cast<double>(sizes.size());
   double sum = 0, squares = 0, full = 0;
   for (const std::size_t size : sizes) {
@@ -64,17 +89,10 @@ bool lost_at_random(const std::vector<std::size_t>& sizes, std::size_t whole) {
     full += size == whole ? 1 : 0;
   }
   const double mean = sum / n, lost = 1 - mean / m, variance = squares / n - mean * mean;
-  double low = 0, high = 0, off = 0;
-  for (const std::size_t size : sizes) {
-    off += static_cast<double>(size) - mean;
-    low = std::min(low, off);
-    high = std::max(high, off);
-  }
-  if (lost > kMostLost || high - low < kLeastWandering) return false;
   const double as_whole = n * std::pow(1 - lost, m), as_scattered = mean * lost;
   const double near = 3 * std::sqrt(as_whole) + 0.1 * as_whole;
-  return as_whole >= kFewestWhole && std::fabs(full - as_whole) <= near && variance > 0.5 * as_scattered &&
-         variance < 2 * as_scattered;
+  return lost <= kMostLost && as_whole >= kFewest && n - full >= kFewest && std::fabs(full - as_whole) <= near &&
+         variance > 0.5 * as_scattered && variance < 2 * as_scattered;
 }
 
 }  // namespace
@@ -87,8 +105,9 @@ std::optional<LossyPackets> find_lossy_packets(const std::vector<std::int64_t>& 
   const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
   if (*most < kLeastRows || *least == *most || all.rows[0] > *most) return std::nullopt;
   const auto whole = static_cast<std::size_t>(std::count(sizes.begin(), sizes.end(), *most));
-  const bool likely = *least + 2 <= *most && 2 * whole > sizes.size();
-  LossyPackets out{time_apart(all.steps), *most, all.rows[0], lost_at_random(sizes, *most), likely};
+  const bool random = !beat(sizes, *most);
+  LossyPackets out{time_apart(all.steps), *most, all.rows[0], random && lost_at_random(sizes, *most),
+                   random && 2 * whole > sizes.size()};
   if (!(out.apart_ns > 0)) return std::nullopt;
   return out;
 }

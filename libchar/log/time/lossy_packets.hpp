@@ -14,7 +14,7 @@ struct LossyPackets {
   std::size_t rows = 0;   ///< of a whole one
   std::size_t first = 0;  ///< rows of the first one
   bool sure = false;      ///< numbers of rows are those of losses at random, and none that beat with a clock
-  bool likely = false;    ///< most packets are whole, and some lack more than a row
+  bool likely = false;    ///< most packets are whole
   double interval_ns() const { return apart_ns / static_cast<double>(rows); }
 };
 
