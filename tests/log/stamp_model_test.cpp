@@ -8,7 +8,7 @@
 #include <functional>
 #include <random>
 
-#include "libchar/log/time/clock_behind.hpp"
+#include "libchar/log/time/delays/clock_behind.hpp"
 #include "tests/log/log_text.hpp"
 
 using namespace libchar;

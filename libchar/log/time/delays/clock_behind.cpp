@@ -1,4 +1,4 @@
-#include "libchar/log/time/clock_behind.hpp"
+#include "libchar/log/time/delays/clock_behind.hpp"
 
 #include <algorithm>
 #include <cmath>
