@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 
 #include "libchar/core/numeric/median.hpp"
 #include "libchar/core/refusal.hpp"
@@ -106,7 +107,7 @@ struct KindSteps {
   std::map<std::string, std::vector<double>> kinds;
 };
 
-KindSteps steps_by_kind(const Stretches& stretches, std::size_t column, const Dialect& dialect) {
+KindSteps steps_by_kind(std::span<const std::vector<Cells>> stretches, std::size_t column, const Dialect& dialect) {
   KindSteps out;
   for (const std::vector<Cells>& rows : stretches) {
     std::optional<std::int64_t> last;
@@ -158,7 +159,7 @@ bool even_by_kind(const KindSteps& steps) {
 // Stamps that stand or scatter as a whole; where the name of the column says nothing of kinds, that
 // stand, and rise by kind. In any case those that are uneven as a whole, and even by kind.
 bool told_apart(const std::vector<Cells>& rows, std::size_t column, bool named, const Dialect& dialect) {
-  const KindSteps steps = steps_by_kind({rows}, column, dialect);
+  const KindSteps steps = steps_by_kind({&rows, 1}, column, dialect);
   if (even_by_kind(steps)) return true;
   const Steps whole = steps_of(steps.whole);
   if (whole.steady()) return false;
@@ -177,14 +178,14 @@ bool many_numbered(const std::vector<Cells>& rows, std::size_t column, const Dia
     if (cell.kind != Cell::value || !cell.integer || !stamp_of(row, dialect)) return false;
     numbers.push_back(cell.number);
   }
-  const Steps whole = steps_of(steps_by_kind({rows}, column, dialect).whole);
+  const Steps whole = steps_of(steps_by_kind({&rows, 1}, column, dialect).whole);
   return numbers.size() > kMostNumbers && 3 * whole.standing >= whole.all &&
          !std::is_sorted(numbers.begin(), numbers.end());
 }
 
 /// More words than the first rows repeat, most of them at the stamp of the one before: a column called after kinds.
 bool many_words(const std::vector<Cells>& rows, std::size_t column, const Dialect& dialect) {
-  const Steps whole = steps_of(steps_by_kind({rows}, column, dialect).whole);
+  const Steps whole = steps_of(steps_by_kind({&rows, 1}, column, dialect).whole);
   return 3 * whole.standing >= 2 * whole.all;
 }
 

@@ -392,18 +392,22 @@ void find_split_seconds(const StampStudy& study, Dialect& dialect, LogInfo& info
     if (column < row.size()) texts.push_back(row[column].text);
   Fractions as_read = fractions_of(texts, dialect, part);
   if (as_read.alike || as_read.most > 9) return;
-  if (as_read.rise && study.whole_head) {
+  const auto rise_as_numbers = [&] {
+    part.fraction_ns = as_read.most > 6 ? 1 : as_read.most > 3 ? 1000 : 1000000;
+    if (fractions_of(texts, dialect, part).rise) return true;
+    part.fraction_ns = 0;
+    return false;
+  };
+  if (as_read.rise && study.whole_head) {  // which takes long
+    if (!rise_as_numbers()) return;
+    part.fraction_ns = 0;
     texts.clear();
     for (const Cells& cell : study.whole_head(column)) texts.push_back(cell[0].text);
     as_read = fractions_of(texts, dialect, part);
   }
-  if (as_read.rise) return;
-  part.fraction_ns = as_read.most > 6 ? 1 : as_read.most > 3 ? 1000 : 1000000;
-  if (fractions_of(texts, dialect, part).rise)
+  if (!as_read.rise && rise_as_numbers())
     info.guesses.push_back(
         fmt::format("stamps: the digits after the mark are {} without leading zeros", word_of(part.fraction_ns)));
-  else
-    part.fraction_ns = 0;
 }
 
 TableFront front_of(const StampStudy& study, const Dialect& dialect, const std::optional<StampPair>& pair) {
