@@ -311,6 +311,19 @@ TEST_CASE("inflation: on request only, before squaring, and said") {
   CHECK(has(refusal("kalibr", test::euroc_imu(), options), "`inflate`"));
 }
 
+TEST_CASE("times and gravity that are not positive are refused by name") {
+  const std::pair<std::string, std::optional<double> ExportOptions::*> kAsked[] = {
+      {"correlation_s", &ExportOptions::correlation_s},
+      {"floor_tau_s", &ExportOptions::floor_tau_s},
+      {"bias_tau_s", &ExportOptions::bias_tau_s},
+      {"gravity", &ExportOptions::gravity}};
+  for (const auto& [name, member] : kAsked) {
+    ExportOptions options;
+    options.*member = 0;
+    CHECK(has(refusal("kalibr", test::euroc_imu(), options), "`" + name + "`: error E0591"));
+  }
+}
+
 TEST_CASE("an absent term: an upper limit where 0 is refused, 0 in a simulator, left out where optional") {
   auto models = test::euroc_imu();
   for (SensorModel& m : models) m.noise[2] = at_most(m.unit == "rad/s" ? 5e-6 : 4e-4);

@@ -163,14 +163,14 @@ TEST_CASE("model files: Kalibr's and imu_utils' are read, each by its own conven
 }
 
 TEST_CASE("model file: a log in its place is told where models come from, however long it is") {
-  const std::string path = (std::filesystem::temp_directory_path() / "libchar_model_log.csv").string();
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "log.csv";
   for (const int rows : {3, 100000}) {
     std::string text = "t,gx\n";
     for (int i = 0; i < rows; ++i) text += "0.01,0.123456\n";
     std::ofstream(path) << text;
     CHECK_THROWS_WITH(read_model_list(path), Catch::Contains("E0546") && Catch::Contains("characterize " + path));
   }
-  std::filesystem::remove(path);
 }
 
 TEST_CASE("model file: what was no noise in the recording is data, and reads back") {

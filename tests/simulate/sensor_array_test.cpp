@@ -134,6 +134,18 @@ TEST_CASE("faults do what their names say, in their time") {
   CHECK(noisy[40] == clean[40]);
 }
 
+TEST_CASE("sensor array: the truth columns pass a low-pass whose corner halves the power") {
+  ArraySimulation s = three_sensors(20000);
+  s.truth[0].frequency_hz = 1;
+  const double before = run(s, 4096).at(3).at(10025);
+  s.truth_bandwidth_hz = 1;
+  const std::vector<double> truth = run(s, 4096).at(3);
+  Moments moments;
+  moments.push(std::span(truth).subspan(10000, 10000));
+  CHECK(std::abs(before) == Approx(1));
+  CHECK(moments.variance() == Approx(0.25).epsilon(0.01));  // of a sine: half, of which the corner takes half
+}
+
 TEST_CASE("sensor array: parts that do not fit together are refused") {
   CHECK(refusal(three_sensors(10)).empty());
   ArraySimulation s = three_sensors(10);

@@ -81,6 +81,7 @@ TEST_CASE("pair spectra: scipy's cross spectrum, coherence, medians and spectrog
   check_list(even.value, known["median_even"], 1e-12, true);
   const Spectrogram gram = spectrogram(pair.x, 50, segments_of_128());
   check_list(gram.time_s, known["time_s"], 1e-15, true);
+  check_list(gram.frequency_hz, known["frequency_hz"], 1e-15, true);
   check_list(gram.value[3], known["spectrogram_3"], 1e-12, true);
 }
 
