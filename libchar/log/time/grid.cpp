@@ -77,7 +77,7 @@ bool TimeGrid::push(RowBlock& block) {
     if (undecided) clocks_.copies.decide();
     for (Pending& waiting : pending_) leave_out(waiting);
   }
-  if (packets_.any()) packets_.spread(pending_.back().block.time_ns, 0);
+  if (clocks_.packets.any()) clocks_.packets.spread(pending_.back().block.time_ns, 0);
   waiting_ = 0;
   for (const Pending& waiting : pending_) waiting_ += waiting.block.rows - waiting.done;
   process(false);

@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "libchar/core/numeric/whole.hpp"
+#include "libchar/log/detail/lossy_packets.hpp"
 #include "libchar/log/detail/row_source.hpp"
 #include "libchar/log/read.hpp"
 #include "libchar/log/time/clock_behind.hpp"
 #include "libchar/log/time/clock_breaks.hpp"
-#include "libchar/log/time/lossy_packets.hpp"
 #include "libchar/log/time/recent_stamps.hpp"
 #include "libchar/log/time/stamp_model.hpp"
 #include "libchar/log/time/stamp_sketch.hpp"
@@ -252,12 +252,12 @@ class TimeGrid {
   Bursts bursts_;
   BackwardRows backward_;
   EvenClock behind_;
-  PacketRows packets_;
   std::optional<std::int64_t> start_ns_;
   struct Clocks {
     OwnRows rows;
     ChannelClocks channels;
     CopiedRows copies;
+    PacketRows packets;
   } clocks_;
   struct Recent {
     RecentStamps rows;

@@ -171,8 +171,8 @@ void TimeGrid::spread_lossy_packets(const std::vector<std::int64_t>& stamps) {
                                 rate, rate));
     return;
   }
-  packets_ = PacketRows(*lossy);
-  for (Pending& item : pending_) packets_.spread(item.block.time_ns, item.done);
+  clocks_.packets = PacketRows(*lossy);
+  for (Pending& item : pending_) clocks_.packets.spread(item.block.time_ns, item.done);
   warnings_.add(
       "packets",
       fmt::format("packets of {} rows share a stamp, and some lack rows: samples are those of {} Hz, and what "

@@ -1,4 +1,4 @@
-#include "libchar/log/time/lossy_packets.hpp"
+#include "libchar/log/detail/lossy_packets.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -51,8 +51,8 @@ double time_apart(const std::vector<double>& steps) {
   return steady >= kSteady * static_cast<double>(steps.size()) ? time / packets : 0;
 }
 
-/// Whole packets among short ones, or these among those, stand as evenly as where the numbers of rows beat with a clock:
-/// packets lost at random stand at distances that scatter as much as their mean.
+/// Whole packets among short ones, or these among those, stand as evenly as where the numbers of rows beat with a
+/// clock: rows lost at random leave distances that scatter as much as their mean.
 bool beat(const std::vector<std::size_t>& sizes, std::size_t whole) {
   constexpr std::size_t kFewest = 3;
   constexpr double kScatter = 0.25;  // of that of random ones
