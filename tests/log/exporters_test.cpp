@@ -375,6 +375,34 @@ std::vector<Export> bench_exports() {
   const std::vector<std::string> beside = {
       "Record Length,4.0e+01", "Sample Interval,1.0e-04", "Trigger Point,1e+03", ",", "Source,CH1",
       "Vertical Units,V",      "Horizontal Units,s"};
+  out.push_back({"nvidia-smi",
+                 "timestamp, power.draw [W], utilization.gpu [%], memory.used [MiB], fan.speed [%]\n" +
+                     lines(12,
+                           [](int k) {
+                             return fmt::format("2024/10/30 18:42:3{}.{}00, {}.50 W, {} %, 1024 MiB, [N/A]\n", k / 10,
+                                                k % 10, 20 + k, k);
+                           }),
+                 "power.draw[W] utilization.gpu[%] memory.used[MiB] fan.speed[%]",
+                 10,
+                 1730313750000000000,
+                 {20.5, 0, 1024, kMissing},
+                 "units after the numbers"});
+  out.push_back({"a thrust stand behind PuTTY",
+                 "=~=~=~=~= PuTTY log 2022.03.27 16:13:03 =~=~=~=~=\n" +
+                     lines(12, [](int k) { return fmt::format("{}.50lbs, 22.67V, 0.{}5A, inf\n", k % 3, k % 10); }),
+                 "c0[lbs] c1[V] c2[A] c3[]",
+                 0,
+                 kNoStart,
+                 {0.5, 22.67, 0.05, kMissing},
+                 "units after the numbers"});
+  out.push_back({"Torque: a sign of infinity",
+                 "Device Time, Speed (km/h), Cost(Instant)\n" +
+                     lines(12, [](int k) { return fmt::format("12:00:{:02}.000,{},{}\n", k, k, k % 2 ? "1.5" : "∞"); }),
+                 "Speed[km/h] Cost[Instant]",
+                 1,
+                 43200000000000,
+                 {0, kMissing},
+                 ""});
   out.push_back({"Nexus of Vicon: devices",
                  "Devices,,,\n2000,,,\n,,Force Plate - Force,\nFrame,Sub Frame,Fx,Fy\n,,N,N\n" +
                      lines(12, [](int k) { return fmt::format("{},{},{},-0.5\n", 1 + k / 20, k % 20, k); }),

@@ -120,7 +120,19 @@ std::optional<MeasuredCell> number_and_unit(std::string_view text) {
   std::string_view symbol = cell.unit;  // "1.2957 V DC" of multimeters
   if (symbol.ends_with(" DC") || symbol.ends_with(" AC")) symbol.remove_suffix(3);
   const auto unit = find_unit(utf8_of(symbol));
-  return unit && !dimensionless(unit->symbol) ? std::optional(cell) : std::nullopt;
+  if (unit) return dimensionless(unit->symbol) ? std::nullopt : std::optional(cell);
+  // "3A" may be a number of base sixteen.
+  const bool clear =
+      symbol.size() > 1 || cell.number.size() < end || cell.number.find_first_of(".,") != cell.number.npos;
+  return clear && unconverted_unit(symbol) ? std::optional(cell) : std::nullopt;
+}
+
+bool unconverted_unit(std::string_view text) {
+  static constexpr std::array<std::string_view, 37> kUnits = {
+      "m/s", "km/h", "knots", "mph", "a",   "ma",  "ua",  "w",  "mw", "kw",    "wh",        "kwh", "m",
+      "mm",  "cm",   "km",    "ft",  "ohm", "lux", "n",   "kn", "lb", "lbs",   "lbf",       "kg",  "mg/l",
+      "l",   "ml",   "db",    "dbm", "kib", "mib", "gib", "kb", "mb", "w/m^2", "umol/s/m^2"};
+  return std::find(kUnits.begin(), kUnits.end(), ascii_lower(text)) != kUnits.end();
 }
 
 bool same_unit(std::string_view a, std::string_view b) {

@@ -38,6 +38,9 @@ struct MeasuredCell {
 };
 std::optional<MeasuredCell> number_and_unit(std::string_view text);
 
+/// A unit of a quantity of which none is converted: current, power, force, length, data.
+bool unconverted_unit(std::string_view text);
+
 /// Two spellings of one unit, in UTF-8 or Windows-1252.
 bool same_unit(std::string_view a, std::string_view b);
 

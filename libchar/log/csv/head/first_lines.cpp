@@ -207,13 +207,11 @@ LineCensus census_of(const Cells& line, const std::vector<ColumnKind>& kinds, Nu
 
 // "(ms)", "V", "second", and what stands there for columns without a unit.
 bool unit_cell(std::string_view text) {
-  static constexpr std::array<std::string_view, 23> kNone = {
-      "ts", "rn", "sequence", "-",  "n/a", "none", "m/s", "km/h", "knots", "a",     "ma",        "w",
-      "kw", "wh", "m",        "mm", "ohm", "lux",  "n",   "kg",   "mg/l",  "w/m^2", "umol/s/m^2"};
+  static constexpr std::array<std::string_view, 6> kNone = {"ts", "rn", "sequence", "-", "n/a", "none"};
   if (text.size() > 2 && ((text.front() == '(' && text.back() == ')') || (text.front() == '[' && text.back() == ']')))
     return true;
-  const std::string lower = ascii_lower(text);
-  return find_unit(text) || std::find(kNone.begin(), kNone.end(), lower) != kNone.end();
+  return find_unit(text) || unconverted_unit(text) ||
+         std::find(kNone.begin(), kNone.end(), ascii_lower(text)) != kNone.end();
 }
 
 /// Two cells alike, which are no names.

@@ -29,10 +29,22 @@ bool is_filling(std::string_view text) {
 bool means_missing(std::string_view text) {
   if (text.empty() || is_filling(text)) return true;
   if (is_digit(text.back())) return false;
-  for (const char* word :
-       {"nan",       "na",       "n/a",  "n.a.", "<na>",  "null",    "none",    "nil",   "-nan",    "+nan",
-        "-nan(ind)", "nan(ind)", "#n/a", "#na",  "#num!", "#value!", "#div/0!", "#ref!", "#null!",  "#name?",
-        "ol",        "-ol",      "+ol",  "o.l",  "-o.l",  "o.l.",    "ovld",    "-ovld", "overload"})
+  for (const char* word : {"nan",       "na",
+                           "n/a",       "n.a.",
+                           "<na>",      "null",
+                           "none",      "nil",
+                           "-nan",      "+nan",
+                           "-nan(ind)", "nan(ind)",
+                           "#n/a",      "#na",
+                           "#num!",     "#value!",
+                           "#div/0!",   "#ref!",
+                           "#null!",    "#name?",
+                           "[n/a]",     "[not supported]",  // nvidia-smi
+                           "ol",        "-ol",
+                           "+ol",       "o.l",
+                           "-o.l",      "o.l.",
+                           "ovld",      "-ovld",
+                           "overload"})
     if (is_word(text, word)) return true;
   return false;
 }
@@ -40,7 +52,7 @@ bool means_missing(std::string_view text) {
 bool means_infinite(std::string_view text) {
   if (is_digit(text.back())) return false;
   if (text[0] == '+' || text[0] == '-') text.remove_prefix(1);
-  return is_word(text, "inf") || is_word(text, "infinity");
+  return is_word(text, "inf") || is_word(text, "infinity") || text == "\xE2\x88\x9E";  // ∞ of Torque
 }
 
 // Why `text` is not a number and where, for the message: the first byte that cannot continue a
