@@ -14,6 +14,7 @@
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/readable.hpp"
+#include "libchar/core/text/text.hpp"
 #include "libchar/log/time/grid.hpp"
 
 namespace libchar {
