@@ -217,8 +217,8 @@ def examples():
             expect(ran.returncode == 0, f"{command}: {ran.stderr}")
         for example in verb["examples"]:
             command = example["command"]
-            expect(f"{command} ".startswith((f"sensorchar {verb['name']} ", f"sensorchar {verb['name'].replace('-', ' ')} ")),
-                   f"{command} is no example of {verb['name']}")
+            words = (f"sensorchar {verb['name']} ", f"sensorchar {verb['name'].replace('-', ' ')} ")
+            expect(f"{command} ".startswith(words), f"{command} is no example of {verb['name']}")
             if command in LONG:
                 continue
             ran = run(command, scratch)
