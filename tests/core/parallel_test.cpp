@@ -5,10 +5,13 @@
 
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "libchar/core/parallel/beside.hpp"
+#include "libchar/core/parallel/thread_limit.hpp"
 
 using namespace libchar;
 
@@ -32,6 +35,31 @@ TEST_CASE("parallel: both, isolated, in a pool of any size") {
   }
   const parallel::OneThread one;
   parallel::for_each(0, 100, [](std::size_t) {});
+}
+
+TEST_CASE("parallel: who waits in a region helps with what is run inside it") {
+  using Clock = std::chrono::steady_clock;
+  if (!parallel::has_threads() || processors_given() < 2) return;
+  const auto until = [](const std::atomic<int>& count, int wanted) {
+    const auto end = Clock::now() + std::chrono::seconds(10);
+    while (count < wanted && Clock::now() < end) std::this_thread::yield();
+    return count >= wanted;
+  };
+  const auto caller = std::this_thread::get_id();
+  std::atomic<int> begun = 0, met = 0, there = 0;
+  const auto half = [&] {
+    // The caller leaves the work to the other thread, and waits.
+    ++begun;
+    if (!until(begun, 2) || std::this_thread::get_id() == caller) return;
+    parallel::Threads(0).run([&] {
+      parallel::for_each(0, 2, [&](std::size_t) {
+        ++there;
+        if (until(there, 2)) ++met;
+      });
+    });
+  };
+  parallel::isolated([&] { parallel::both(half, half); });
+  if (begun == 2) CHECK(met == 2);
 }
 
 TEST_CASE("parallel: a stream is read and taken in order") {
