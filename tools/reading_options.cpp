@@ -5,6 +5,7 @@
 
 #include <sstream>
 
+#include "libchar/core/parallel/thread_limit.hpp"
 #include "libchar/core/refusal.hpp"
 #include "libchar/core/text/decimal.hpp"
 #include "libchar/core/text/quantity_text.hpp"
@@ -192,8 +193,9 @@ void add_reading_options_without_channel(VerbOptions& verb, Session& session, li
           "--threads", "N",
           [&options](const std::string& text) {
             options.threads = static_cast<int>(libchar::parse_count(text, 0, 4096));
+            if (options.threads > 0) libchar::keep_to_threads(options.threads);  // curves and fits as well
           },
-          "threads for reading; the result does not depend on it (default: 0 = all cores)")
+          "threads at most, beside that of a digest; the result does not depend on it (default: 0 = all cores)")
       .group("Reading");
   verb.add_flag("--strict", session.strict, "a warning about the input ends the run with exit code 3").group("Reading");
 }
