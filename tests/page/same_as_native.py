@@ -65,6 +65,9 @@ def tolerance(a, b, width, where):
     # What more data would bring is said to two digits.
     if where.rsplit("/", 1)[-1] in FORECASTS:
         return 1e-4 * size
+    # A coefficient as it is drawn, which its interval may leave far wider.
+    if "/asymptotes/" in where:
+        return 10 * NEAR * size
     # It scatters by twice its root.
     if where.endswith("likelihood_ratio"):
         return NEAR * (1 + 2 * math.sqrt(size))

@@ -178,19 +178,21 @@ Candidate best_step(const Search& search, const Regression& beside, std::span<co
   return best;
 }
 
-Candidate best_of(EventKind kind, const Search& search, const Regression& beside, std::span<const double> weight) {
+/// Placed exactly from `least` of its threshold on.
+Candidate best_of(EventKind kind, const Search& search, const Regression& beside, std::span<const double> weight,
+                  double least = 0) {
   const double alpha = search.options.false_alarm;
   if (kind == EventKind::step) return best_step(search, beside, weight);
   if (kind == EventKind::ramp)
     return {{kind}, ramp_score(beside, search.grid, weight).value(), rough_threshold({}, alpha / 4)};
   if (kind == EventKind::cycle) {
-    const CycleScan cycle = scan_cycles(beside, search.grid, weight);
+    const CycleScan cycle = scan_cycles(beside, search.grid, weight, least * kCycleThreshold);
     return {{kind, cycle.place, 0, cycle.phase}, cycle.score, kCycleThreshold};
   }
   const WarmUpScan scan = scan_warm_ups(beside, search.grid, weight);
-  return {{kind, 0, 0, refined_tau(scan, beside, search.grid, weight)},
-          scan.score[scan.best],
-          smooth_threshold(scan.distance, alpha / 4)};
+  Candidate best{{kind, 0, 0, scan.tau[scan.best]}, scan.score[scan.best], smooth_threshold(scan.distance, alpha / 4)};
+  if (std::abs(best.score) >= least * best.threshold) best.shape.tau = refined_tau(scan, beside, search.grid, weight);
+  return best;
 }
 
 /// A hypothesis with a candidate more, placed once more when the noise is fitted without it.
@@ -256,11 +258,11 @@ double walk_like_drift(const Search& search, const Hypothesis& now, const Trial&
 std::optional<Trial> next_event(const Search& search, const Hypothesis& now, EventSearch& found) {
   std::vector<Trial> trials;
   for (const EventKind kind : offered(search, now)) {
-    const Candidate candidate = best_of(kind, search, now.fit, now.weight);
     const bool bends_another = kind == EventKind::ramp && has(now, EventKind::warm_up);
     const bool hidden = kind == EventKind::ramp && now.power[0] > kLikeWalk * now.power[1];
     const double gate =
         (hidden || kind == EventKind::cycle ? kRampGate : kGate) * (search.nearly > 0 ? kNearlyGate : 1);
+    const Candidate candidate = best_of(kind, search, now.fit, now.weight, gate);
     if (!bends_another && std::abs(candidate.score) < gate * candidate.threshold) continue;
     trials.push_back(try_candidate(search, now, candidate));
     double& threshold = trials.back().candidate.threshold;

@@ -71,8 +71,12 @@ void fill_ramp(const SeriesGrid& grid, std::vector<double>& column) {
 
 void fill_cycle(const EventShape& shape, std::size_t points, std::vector<double>& column) {
   const detail::SineColumns sines(detail::off_grid(shape.at), points);
-  for (std::size_t k = 1; k <= column.size(); ++k)
-    column[k - 1] = sines.at(k).dot(Eigen::RowVector2d(std::cos(shape.tau), std::sin(shape.tau)));
+  const Eigen::RowVector2d phase(std::cos(shape.tau), std::sin(shape.tau));
+  Turning half(sines.half_unit);
+  for (std::size_t k = 1; k <= column.size(); ++k) {
+    half.next();
+    column[k - 1] = sines.at(k, half.sine, half.cosine).dot(phase);
+  }
 }
 
 }  // namespace

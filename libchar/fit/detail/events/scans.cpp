@@ -141,7 +141,11 @@ CycleScan cycle_at(double place, const Regression& beside, std::size_t points, s
   const std::size_t head = std::min(kHeadOfCycle, weight.size());
   const detail::SineColumns sines(detail::off_grid(place), points);
   Eigen::MatrixX2d column(head, 2);
-  for (std::size_t k = 0; k < head; ++k) column.row(static_cast<Eigen::Index>(k)) = sines.at(k + 1);
+  Turning half(sines.half_unit);
+  for (std::size_t k = 0; k < head; ++k) {
+    half.next();
+    column.row(static_cast<Eigen::Index>(k)) = sines.at(k + 1, half.sine, half.cosine);
+  }
   const Eigen::Map<const Eigen::VectorXd> w(weight.data(), column.rows()), rest(beside.rest.data(), column.rows());
   const Eigen::MatrixX2d weighted = w.asDiagonal() * column;
   const Eigen::Vector2d numerator = weighted.transpose() * rest;
@@ -167,13 +171,15 @@ CycleScan cycle_at(double place, const Regression& beside, std::size_t points, s
 
 }  // namespace
 
-CycleScan scan_cycles(const Regression& beside, const SeriesGrid& grid, std::span<const double> weight) {
+CycleScan scan_cycles(const Regression& beside, const SeriesGrid& grid, std::span<const double> weight, double least) {
   constexpr double kStep = 0.15;
+  constexpr double kBetween = 0.95;  ///< a score between two places is hardly more than the larger one
   const auto at = [&](double place) { return cycle_at(place, beside, grid.points, weight); };
   CycleScan best = at(kLeastPlace);
   for (double place = kLeastPlace + kStep; place < kMostPlace; place += kStep)
     if (CycleScan one = at(place); one.score > best.score) best = one;
   if (best.place > kFastest) return {best.place, best.phase, 0};
+  if (best.score < kBetween * least) return best;
   double low = std::max(kLeastPlace, best.place - kStep), high = std::min(kMostPlace, best.place + kStep);
   for (int i = 0; i < 12; ++i) {
     const double third = (high - low) / 3;

@@ -34,12 +34,13 @@ double refined_tau(const WarmUpScan& scan, const Regression& beside, const Serie
                    std::span<const double> weight);
 
 /// The best cycle of .6 to 2.7 periods (faster ones are lines, and cycles.hpp takes them out), and the root of what it
-/// explains.
+/// explains; one that is surely below `least` is placed by the step of the scan.
 struct CycleScan {
   double place = 0, phase = 0;  ///< as an EventShape has them
   double score = 0;
 };
-CycleScan scan_cycles(const Regression& beside, const SeriesGrid& grid, std::span<const double> weight);
+CycleScan scan_cycles(const Regression& beside, const SeriesGrid& grid, std::span<const double> weight,
+                      double least = 0);
 
 Score ramp_score(const Regression& beside, const SeriesGrid& grid, std::span<const double> weight);
 

@@ -194,15 +194,15 @@ void take_out_harmonics(std::vector<Sine>& found, const Head& head) {
 
 SineColumns::SineColumns(double place, std::size_t n)
     : half_unit(std::numbers::pi / static_cast<double>(n) / 2),
-      half_w(half_unit * place),
+      half_sine(std::sin(half_unit * place)),
+      half_cosine(std::cos(half_unit * place)),
       scale(std::sqrt(2 / static_cast<double>(n)) / 4),
       sine(std::sin(std::numbers::pi * place)),
       cosine(std::cos(std::numbers::pi * place)) {}
 
 Eigen::RowVector2d SineColumns::at(std::size_t k) const {
-  const double half_theta = half_unit * static_cast<double>(k), sign = k % 2 == 0 ? 1 : -1;
-  const double far = scale * (1 / std::sin(half_w + half_theta) + 1 / std::sin(half_w - half_theta));
-  return {far * sign * sine, far * (1 - sign * cosine)};
+  const double half_theta = half_unit * static_cast<double>(k);
+  return at(k, std::sin(half_theta), std::cos(half_theta));
 }
 
 double off_grid(double place) {

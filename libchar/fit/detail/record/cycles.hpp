@@ -16,9 +16,15 @@ inline constexpr std::size_t kCycleReach = 8192;
 /// The coefficients k = 1.. of the orthonormal DCT-II of n points of cos(w u) and sin(w u), w = pi place / n,
 /// u = t + 1/2: a sine of `place` half periods.
 struct SineColumns {
-  double half_unit, half_w, scale, sine, cosine;
+  double half_unit, half_sine, half_cosine, scale, sine, cosine;
   SineColumns(double place, std::size_t n);
   Eigen::RowVector2d at(std::size_t k) const;
+  /// The same, with sine and cosine of k `half_unit`.
+  Eigen::RowVector2d at(std::size_t k, double sine_k, double cosine_k) const {
+    const double sum = half_sine * cosine_k + half_cosine * sine_k, less = half_sine * cosine_k - half_cosine * sine_k;
+    const double far = scale * 2 * half_sine * cosine_k / (sum * less), sign = k % 2 == 0 ? 1 : -1;
+    return {far * sign * sine, far * (1 - sign * cosine)};
+  }
 };
 
 /// Off the coefficients themselves, where both factors are zero over zero.
