@@ -164,7 +164,7 @@ async function severalLogs(one) {
   await one.report("right.csv");
   await one.run("Which one?");
   check((await one.command()).startsWith("sensorchar compare left.csv middle.csv right.csv"), "all that was dropped is compared");
-  await one.report("Lowest N: middle");
+  await one.report("Lowest N: middle", "sensorchar compare left.csv middle.csv right.csv");
   await one.run("Which one?", async tab => {
     for (const name of ["middle.csv", "right.csv"]) await tab.getByRole("checkbox", { name, exact: true }).uncheck();
     await tab.getByRole("checkbox", { name: "reports/right", exact: true }).check();

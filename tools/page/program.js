@@ -1,5 +1,6 @@
 // Inside the program's module (emcc --pre-js): what it prints goes to whoever started it, byte by byte, and it draws its progress.
 // `Module.said(stream, byte)`: stream 1 or 2.
+Module.thisProgram = "sensorchar"; // as reports have their command
 Module.preRun = Module.preRun || [];
 Module.preRun.push(() => {
   ENV.TERM = "page";
