@@ -158,7 +158,10 @@ std::shared_ptr<const AllanCovariance> AllanCovarianceCache::of(const AllanCurve
   const std::lock_guard lock(mutex_);
   for (const Entry& entry : entries_)
     if (entry.dt_s == curve.dt_s && entry.key == key) return entry.covariance;
-  entries_.push_back({std::move(key), curve.dt_s, std::make_shared<const AllanCovariance>(curve)});
+  // Who waits for its parts with the lock in hand begins nothing that may want it too.
+  std::shared_ptr<const AllanCovariance> made;
+  parallel::isolated([&] { made = std::make_shared<const AllanCovariance>(curve); });
+  entries_.push_back({std::move(key), curve.dt_s, std::move(made)});
   return entries_.back().covariance;
 }
 

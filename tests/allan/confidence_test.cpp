@@ -1,16 +1,20 @@
 // Degrees of freedom and covariance against exact tables, brute force and simulation.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <random>
+#include <vector>
 
 #include "libchar/allan/allan_covariance.hpp"
 #include "libchar/allan/allan_deviation.hpp"
 #include "libchar/allan/detail/equivalent_dof.hpp"
 #include "libchar/allan/noise_curves.hpp"
 #include "libchar/core/error.hpp"
+#include "libchar/core/parallel/parallel.hpp"
 #include "tests/support/algebra.hpp"
 #include "tests/support/shared.hpp"
 #include "tests/support/table.hpp"
@@ -188,6 +192,15 @@ TEST_CASE("the covariance that is remembered is that of the curve") {
   for (const AllanCurve* curve : {&a, &b, &c, &a, &b, &c})
     CHECK(cache.of(*curve)->at(theta) == allan_covariance(*curve, theta));
   CHECK(cache.of(a) == cache.of(a));
+}
+
+TEST_CASE("the covariance is remembered by several at once, none of which waits for itself") {
+  std::vector<AllanCurve> curves;
+  for (std::uint64_t n = 1024; n < 1024 + 200; ++n) curves.push_back(octaves(n));
+  AllanCovarianceCache cache;
+  std::vector<std::shared_ptr<const AllanCovariance>> made(curves.size());
+  parallel::for_each(0, curves.size(), [&](std::size_t i) { made[i] = cache.of(curves[i]); });
+  CHECK(std::count(made.begin(), made.end(), nullptr) == 0);
 }
 
 TEST_CASE("covariance against every pair of terms, N = 256, all five terms") {
