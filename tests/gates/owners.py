@@ -36,6 +36,9 @@ QUESTIONS = [
     Question("whole number of a real one", "libchar/core/numeric/whole.hpp: clamped_whole",
              r"\bl?l(?:round|rint)\(|"
              r"static_cast<(?!double|float)[\w: ]+>\(std::(?:ceil|floor|round|rint|trunc|pow|exp|log\w*|sqrt)\("),
+    # std::lgamma writes the sign to a global: a race between threads.
+    Question("logarithm of the gamma function", "libchar/lot/detail/statistics/lognormal_effects.cpp: log_gamma",
+             r"\blgamma(?:_r)?\("),
     Question("one or many", "libchar/core/text/text.cpp: plural", r'== 1 \? "" : "s"|\? "s" : ""'),
     Question("nearest word that exists", "libchar/core/text/spelling.cpp: did_you_mean", r'"did you mean'),
     Question("rating of a channel", "libchar/characterize/judgement.cpp: judge",

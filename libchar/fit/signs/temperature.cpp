@@ -173,11 +173,10 @@ TemperatureFit fit_temperature(std::span<const std::vector<double>> columns, std
 /// P(the largest gain over lags >= the largest of `gains`) of a record that temperature does not move; `gains` along
 /// the lags.
 double chance_of_gain(double gain, std::span<const double> gains, int order) {
+  if (!(gain > 0)) return 1;
   double variation = 0;
   for (std::size_t i = 1; i < gains.size(); ++i) variation += std::abs(std::sqrt(gains[i]) - std::sqrt(gains[i - 1]));
-  const double half = 0.5 * order;
-  const double rate = std::exp((half - 0.5) * std::log(gain) - gain / 2 - half * std::log(2.0) - std::lgamma(half));
-  return gain > 0 ? std::min(1.0, chi_square_tail(gain, order) + variation * rate) : 1;
+  return std::min(1.0, chi_square_tail(gain, order) + variation * std::sqrt(gain) * chi_square_density(gain, order));
 }
 
 constexpr double kFalseAlarm = 0.01;

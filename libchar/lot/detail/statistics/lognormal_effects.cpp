@@ -154,12 +154,18 @@ std::vector<Point> points_of(const SquareEstimates& in) {
   return out;
 }
 
+/// std::lgamma writes the sign to a global, which is a race between threads.
+double log_gamma(double x) {
+  int sign = 0;
+  return ::lgamma_r(x, &sign);
+}
+
 /// Of finding the point where the square is `square`; but for what does not depend on it.
 double log_density(const Point& point, double square) {
   const double beneath = point.error.beneath_at(square), energy = square + beneath;
   const double share = energy / point.error.sd_at(square), half_dof = share * share;
   const double x = half_dof * (point.square + beneath) / energy;
-  return half_dof * std::log(x) - x - std::lgamma(half_dof) - std::log(point.square + beneath);
+  return half_dof * std::log(x) - x - log_gamma(half_dof) - std::log(point.square + beneath);
 }
 
 class Likelihood {
