@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -167,4 +168,30 @@ TEST_CASE("what is fixed to a body that turns throughout does not rest") {
   // A table that turns about one axis; what vibrates without turning.
   for (const auto& turning : {std::vector{"gz"}, {"ax"}, {}})
     for (const ChannelResult& one : log_of(turning)) CHECK(one.findings.empty());
+}
+
+TEST_CASE("what is fixed to gyroscopes that turn cannot be at rest: how many turn is said") {
+  const auto channels_of = [](std::size_t turning, std::size_t resting) {
+    std::vector<ChannelResult> out(turning + resting + 2);
+    for (std::size_t c = 0; c < turning + resting; ++c) {
+      out[c].channel.name = "g" + std::to_string(c);
+      out[c].channel.unit = "rad/s";
+      out[c].motion.whole = c < turning;
+    }
+    out[turning + resting].channel.unit = "m/s^2";
+    out[turning + resting + 1].channel.unit = "degC";
+    detail::doubt_together(out);
+    return out;
+  };
+  const auto said = [](const ChannelResult& one) {
+    return one.findings.empty() ? "" : one.findings[0].sentence.substr(0, one.findings[0].sentence.find(" through"));
+  };
+  CHECK(said(channels_of(1, 1)[2]) == "g0 turns");
+  CHECK(said(channels_of(1, 1)[1]) == "g0 turns");
+  CHECK(said(channels_of(2, 0)[2]) == "g0 and 1 other gyroscope turn");
+  CHECK(said(channels_of(3, 1)[4]) == "g0 and 2 other gyroscopes turn");
+  CHECK(said(channels_of(3, 1)[0]).empty());  // what turns itself says so elsewhere
+  CHECK(said(channels_of(3, 1)[5]).empty());  // a thermometer may turn
+  CHECK(said(channels_of(1, 2)[3]).empty());  // fewer than half
+  CHECK(said(channels_of(0, 2)[2]).empty());
 }

@@ -108,6 +108,28 @@ TEST_CASE("no text stands beyond the page, whatever the names, sizes and values"
   }
 }
 
+TEST_CASE("rows of a legend below stand one under the other, below the plot and on the page") {
+  std::vector<SourceCurve> curves;
+  for (int i = 0; i < 5; ++i)
+    curves.push_back(test::figure_curve(fmt::format("row {} of a legend that needs a line each", i), "deg/s"));
+  DrawingOptions options;
+  options.width_mm = 85;
+  options.height_mm = 100;
+  options.legend = LegendPlace::below;
+  const std::string svg = svg_of_chart(allan_of(curves), options);
+  double above = 50 * 72 / 25.4;  // the middle of the page
+  for (int i = 0; i < 5; ++i) {
+    const std::size_t name = svg.find(fmt::format("row {} of", i));
+    REQUIRE(name != std::string::npos);
+    const std::size_t text = svg.rfind("<text x=\"", name);
+    REQUIRE(text != std::string::npos);
+    const double y = std::stod(svg.substr(svg.find(" y=\"", text) + 4));
+    CHECK(y > above + 5);
+    above = y;
+  }
+  CHECK(above <= 100 * 72 / 25.4);
+}
+
 TEST_CASE("the same figure gives the same bytes, in each format") {
   const Chart chart = allan_of({test::figure_curve("g", "deg/s")});
   for (const FigureFormat format : {FigureFormat::svg, FigureFormat::pdf, FigureFormat::png}) {

@@ -141,6 +141,24 @@ TEST_CASE("curves.csv: a tidy table that reads back to the same doubles") {
   CHECK(high > result.channels[0].spectrum.value[0]);
 }
 
+TEST_CASE("a spectrogram as CSV: a row a value, none for a segment with a missing sample") {
+  LogSpectrograms log;
+  log.channels = {Channel{}, Channel{}};
+  log.channels[0].name = "gx", log.channels[0].unit = "rad/s";
+  log.channels[1].name = "t", log.channels[1].unit = "degC";
+  Spectrogram one;
+  one.time_s = {0.5, 1.5, 2.5};
+  one.frequency_hz = {0, 2};
+  one.value = {{0.25, 0.5}, {}, {4, 8}};
+  log.spectrograms = {one, one};
+  const auto rows = rows_of(spectrograms_csv(log));
+  REQUIRE(rows.size() == 1 + 2 * 4);
+  CHECK(rows[0] == std::vector<std::string>{"channel", "unit", "time_s", "frequency_hz", "value"});
+  CHECK(rows[1] == std::vector<std::string>{"gx", "(rad/s)²/Hz", "0.5", "0", "0.25"});
+  CHECK(rows[4] == std::vector<std::string>{"gx", "(rad/s)²/Hz", "2.5", "2", "8"});
+  CHECK(rows[8] == std::vector<std::string>{"t", "degC²/Hz", "2.5", "2", "8"});
+}
+
 TEST_CASE("curves.csv: hostile names stay one cell and start no formula") {
   const auto result = test::hostile();
   std::set<std::string> names;
