@@ -175,6 +175,20 @@ TEST_CASE("columns behind the last name are known by their position, that of row
              Catch::Contains("line 1 has no name for each column") && Catch::Contains("`skip_rows` 1"));
 }
 
+TEST_CASE("between single blanks, a blank in front of names or units is an empty first cell") {
+  const auto rows = [](const char* indent) {
+    return forty([&](int k) { return fmt::format("{}{:.2f} {}.25 -{}.5\n", indent, 0.01 * k, k % 7, k % 5); });
+  };
+  const Recording units = read_text("time gx ax\n deg/s m/s^2\n" + rows(""));
+  CHECK(names_of(units) == "gx[deg/s] ax[m/s^2] ");
+  CHECK(units.info.time.rate_hz == Approx(100));
+  const Recording names = read_text(" gx ax\n" + rows(""));  // of an index without a name
+  CHECK(names_of(names) == "gx[] ax[] ");
+  CHECK(names.info.time.rate_hz == Approx(100));
+  CHECK(names_of(read_text(" time gx ax\n s deg/s m/s^2\n" + rows(" "))) == "gx[deg/s] ax[m/s^2] ");
+  CHECK_THAT(failure(" gx ax\n" + rows(" ")), Catch::Contains("line 1 has no name for each column"));
+}
+
 TEST_CASE("a line of units is told by the unit of the time alone") {
   const Recording r = read_text("Time,a,b\nsec,counts,flurbs\n" +
                                 forty([](int k) { return fmt::format("{:.1f},{}.5,2\n", 0.1 * k, k); }));

@@ -327,7 +327,7 @@ void read_names(Study& study, const Line& line, std::string_view text) {
 }
 
 void read_units(Study& study, const Line& line) {
-  const Cells fields = cells_in(study.dialect, line.text);
+  const Cells fields = table_cells(study, line.text);
   for (std::size_t c = 0; c < std::min(fields.size(), study.dialect.columns.size()); ++c) {
     std::string_view unit = fields[c].text;
     if (unit.size() > 2 && ((unit.front() == '(' && unit.back() == ')') || (unit.front() == '[' && unit.back() == ']')))

@@ -46,6 +46,13 @@ void add_missing_names(const Study& study, std::string_view text, Cells& fields)
   const Cells last = cells_in(study.dialect, study.sample[rows - 1].text),
               before = cells_in(study.dialect, study.sample[rows - 2].text);
   if (last.size() != columns || before.size() != columns) return;
+  // Between single blanks an empty first cell is a blank in front of the line, where rows have none.
+  const auto indented = [](std::string_view line) { return line.starts_with(' '); };
+  if (study.dialect.delimiter == ' ' && fields.size() + 1 == columns && indented(text) &&
+      !indented(study.sample[rows - 1].text) && !indented(study.sample[rows - 2].text)) {
+    fields.insert(fields.begin(), Field{"", 0, false});
+    return;
+  }
   const auto says_time = [](const Field& field) {
     const auto name = time_name(name_and_unit(field.text).first);
     return name && !name->date;
