@@ -327,6 +327,10 @@ TEST_CASE("a workbook: dates by their style, shared texts, the first sheet or on
   CHECK(bench.samples[0][39] == 1 + 39.0 / 64);
 }
 
+TEST_CASE("a workbook without a cell is empty, and not cut") {
+  CHECK_THAT(outcome(of("nothing.xlsx")), Catch::Contains("Sheet1: the file is empty"));
+}
+
 TEST_CASE("a phone's archive: a topic for each file, with the units of its sensor, or several as one") {
   CHECK_THAT(outcome(of("phone.zip")), Catch::Contains("E0427") && Catch::Contains("Accelerometer"));
   const Recording gyro = read_recording(of("phone.zip"), topic("Gyroscope"));

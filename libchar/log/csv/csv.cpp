@@ -230,7 +230,7 @@ class CsvSource final : public RowSource {
   void begin(const std::string& name, const ReadOptions& options) {
     info_.file = name;
     const std::string_view head = chunks_.head();
-    if (head.empty() && chunks_.packed())
+    if (head.empty() && chunks_.packed() && !chunks_.made())
       throw input_error("E0329", info_.file)
           .says("the compressed data end before their first byte of text")
           .hint("copy the file again");
