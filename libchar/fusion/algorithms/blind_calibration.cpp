@@ -38,7 +38,21 @@ BlindCalibration::BlindCalibration(const Array& array, const Settings& settings)
   if (array.channels < 3 && levels_.size() == 0) noise_removal_ = false;
 }
 
+/// The mean of the corrected channels that are there, by what has been learnt so far.
+Estimate BlindCalibration::of_present(const Sample& y) const {
+  double sum = 0, present = 0, first = 0;
+  for (Eigen::Index i = 0; i < y.size(); ++i) {
+    if (!usable(y[i])) continue;
+    if (present == 0) first = y[i];
+    sum += solved_ ? inverse_gain_[i] * ((y[i] - origin_) - solved_mean_[i]) : y[i] - first;
+    ++present;
+  }
+  if (present == 0) return Estimate::none(1);
+  return Estimate::scalar((solved_ ? origin_ + centre_ : first) + sum / present, std::nan(""));
+}
+
 Estimate BlindCalibration::step(const Sample& y) {
+  if (!complete(y)) return of_present(y);
   gather(y);
   if (instants_ >= next_) {
     next_ = std::ceil(instants_ * 1.1);

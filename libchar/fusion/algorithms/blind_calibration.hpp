@@ -13,7 +13,7 @@
 // where they are given, else estimated with the gains as the one factor of C = s g g' + D (n > 2), alternating the
 // leading eigenvector of D^-1/2 C D^-1/2 and D = diag(C - s g g'); then (P o (C - D)) a = 0 holds for a = 1/g. With
 // noise_removal = 0: argmin a'(P o C) a on the gauge. Solved when the number of instants has grown by a tenth, from
-// running moments, never per instant.
+// running moments, never per instant. An instant that lacks a sample teaches nothing: the others have their mean.
 //
 // As published: the solution of a single instant, u_ref / u_i of centred samples, smoothed with 0.999999 from one. It
 // is a ratio of Gaussians, without a mean (docs/theory/fusion.md): kept for comparison.
@@ -27,11 +27,12 @@
 namespace libchar::fusion {
 
 struct BlindCalibration {
-  static constexpr Description description{.name = "blind-calibration",
-                                           .title = "Blind calibration, then the mean",
-                                           .source = "[RV 3.5]; Balzano & Nowak 2007",
-                                           .complexity = "O(n^2)",
-                                           .needs = {.min_channels = 2, .max_channels = kMostPaired}};
+  static constexpr Description description{
+      .name = "blind-calibration",
+      .title = "Blind calibration, then the mean",
+      .source = "[RV 3.5]; Balzano & Nowak 2007",
+      .complexity = "O(n^2)",
+      .needs = {.min_channels = 2, .max_channels = kMostPaired, .accepts_missing = true}};
   static constexpr std::array options{
       Option{"gauge", "", 0, 0, 1e6, "0: mean of the inverse gains is one; k: channel k (from 1) has gain one", true},
       Option{"noise_removal", "", 1, 0, 1, "1: the noise is taken off the diagonal of the covariance", true}};
@@ -50,6 +51,7 @@ struct BlindCalibration {
   const Eigen::VectorXd& offset() const { return offset_; }
 
  private:
+  Estimate of_present(const Sample& y) const;
   void gather(const Sample& y);
   bool solve_factor();
   bool solve_gram();

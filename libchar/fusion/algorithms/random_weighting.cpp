@@ -16,7 +16,15 @@ RandomWeighting::RandomWeighting(const Array& array, const Settings& settings)
       variances_(squares_),
       weights_(Eigen::VectorXd::Constant(array.channels, 1 / static_cast<double>(array.channels))) {}
 
+/// By the weights so far: an instant that lacks a sample teaches nothing, since the mean that the channels are compared
+/// with would be another one.
+Estimate RandomWeighting::of_present(const Sample& y) const {
+  const WeightedMean mean = weighted_mean_of_present(y.data(), weights_.data(), weights_.size());
+  return Estimate::scalar(mean.x, mean.used > 0 ? variance_ / mean.used : std::nan(""));
+}
+
 Estimate RandomWeighting::step(const Sample& y) {
+  if (!complete(y)) return of_present(y);
   const Eigen::Index n = squares_.size();
   const double channels = static_cast<double>(n), base = y[0];
   double mean = 0;
@@ -50,7 +58,8 @@ Estimate RandomWeighting::step(const Sample& y) {
     weights_[i] *= inverse;
     x += weights_[i] * (y[i] - base);
   }
-  return Estimate::scalar(base + x, largest * inverse);
+  variance_ = largest * inverse;
+  return Estimate::scalar(base + x, variance_);
 }
 
 RandomWeightingPublished::RandomWeightingPublished(const Array& array, const Settings& settings)
