@@ -195,7 +195,7 @@ void add_reading_options_without_channel(VerbOptions& verb, Session& session, li
             options.threads = static_cast<int>(libchar::parse_count(text, 0, 4096));
             if (options.threads > 0) libchar::keep_to_threads(options.threads);  // curves and fits as well
           },
-          "threads at most, beside that of a digest; the result does not depend on it (default: 0 = all cores)")
+          "threads at most (a digest has one more); the result does not depend on it (default: 0 = all cores)")
       .group("Reading");
   verb.add_flag("--strict", session.strict, "a warning about the input ends the run with exit code 3").group("Reading");
 }

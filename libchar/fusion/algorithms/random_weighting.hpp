@@ -5,8 +5,8 @@
 // which the input cancels:
 //   d_i = y_i - mean(y),  s_i = mean over time of d_i^2,  v_i = n/(n-2) [s_i - sum s / (n (n-1))],
 //   w_i = (1/v_i) / sum_j 1/v_j
-// A variance that comes out below `floor` x the largest is raised to it; [RV] has no rule. Where a sample is missing the
-// weights of the others are scaled up to one, and nothing is learnt.
+// A variance that comes out below `floor` x the largest is raised to it; [RV] has no rule. Where a sample is missing
+// the weights of the others are scaled up to one, and nothing is learnt.
 //
 // As published: v_i = gamma_ii - gamma_ir with gamma_ij = mean over time of y_i y_j and a reference channel r that must
 // be free of faults (for r itself another one). The input's power stands in both terms and cancels on average only, so
