@@ -25,6 +25,7 @@ SPELLINGS = {
     "length of time in words": 'return fmt::format("{:.1f} min", seconds / 60);',
     "digits of a number": 'return fmt::format("jitter {:.2g} us", jitter);',
     "value in the field's units": "for (const HabitualValue& habit : habitual_units(key, unit)) add(habit);",
+    "logarithm of the gamma function": "const double y = std::lgamma(x);",
     "one or many": 'return n == 1 ? "" : "s";',
     "nearest word that exists": 'return "did you mean " + word;',
     "rating of a channel": "channel.rating = Rating::caution;",
