@@ -217,11 +217,13 @@ TEST_CASE("stamps in a column for each of their numbers are read as one") {
     if (one.header[0] != 'h') CHECK(r.info.time.start_ns.value_or(0) == 1792627200 * kBillion);
   }
   // With a clock of their own, or numbers that are no dates, such columns are channels.
-  std::string beside = "time,year,month,day,hour,x\n", others = "year,month,day,hour,x\n";
+  std::string beside = "time,year,month,day,hour,x\n", others = "year,month,day,hour,x\n", huge = others;
   for (int i = 0; i < 100; ++i) {
     beside += fmt::format("{},2026,10,22,{},{}\n", i, i % 24, i % 7);
     others += fmt::format("{},{},{},{},{}\n", i, i % 40, i % 7, i, i % 7);
+    huge += fmt::format("11700000000000000000,{},{},{},{}\n", i % 12, i % 7, i % 24, i % 7);  // beyond an int
   }
+  CHECK(test::read_text(huge).info.channels.size() >= 4);
   CHECK(test::read_text(beside).info.channels.size() == 5);
   CHECK(test::read_text(others).info.channels.size() >= 4);
 }

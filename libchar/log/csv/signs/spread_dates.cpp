@@ -218,7 +218,7 @@ std::optional<int> whole_part(const SpreadStamp& where, const std::vector<std::s
   const std::size_t at = where.at[static_cast<std::size_t>(part)];
   if (at == 0) return least == 1 ? 1 : 0;
   const auto value = parse_double(bare(cells[at - 1]));
-  if (!value || *value != static_cast<int>(*value) || *value < least || *value > most) return std::nullopt;
+  if (!value || !(*value >= least && *value <= most) || *value != static_cast<int>(*value)) return std::nullopt;
   return static_cast<int>(*value);
 }
 
